@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "easydyn/results/result_file.hpp"
+
+namespace easydyn::soil {
+
+/// A rectangle of the ground surface under uniform vertical pressure.
+struct Footprint {
+  double x = 0, y = 0;            ///< centre [m]
+  double length = 0, width = 0;   ///< along x, along y [m], > 0
+};
+
+/// Load histories on the ground surface: force(i, j) [N], positive downward, at time(i) [s] on footprint j.
+/// The step is uniform. The one format between a source (train, pile driver, machine) and the ground.
+struct SurfaceLoads {
+  Eigen::VectorXd time;
+  std::vector<Footprint> footprints;
+  Eigen::MatrixXd force;
+};
+
+/// @throws ModelError if sizes disagree, the time is not uniform or a value is not finite
+void write_surface_loads(const std::filesystem::path& path, const SurfaceLoads& loads,
+                         const results::Provenance& provenance);
+/// @throws InputError naming the file, the dataset and what is wrong
+SurfaceLoads read_surface_loads(const std::filesystem::path& path);
+
+}  // namespace easydyn::soil
