@@ -6,16 +6,9 @@
 #include <string>
 #include <vector>
 
-namespace easydyn::results {
+#include "easydyn/results/provenance.hpp"
 
-/// Who made a result file, how and in which convention; stored as attributes of the HDF5 root.
-struct Provenance {
-  std::string program;     ///< e.g. "tram"
-  std::string command;     ///< command line as given
-  std::string convention;  ///< axes and signs, one sentence
-  std::string version;     ///< empty: the version of the library
-  std::string created;     ///< ISO 8601 UTC; empty: now
-};
+namespace easydyn::results {
 
 /// What a numeric dataset is.
 struct Meaning {
@@ -26,9 +19,11 @@ struct Meaning {
 
 /// An HDF5 file in the making. It lives under a temporary name beside `path` and takes its name in commit();
 /// destroyed before that (an exception, a killed run), it leaves nothing under `path`.
-/// Names are paths ("/rail/deflection"); groups are made as needed. Non-finite numbers are refused unless
-/// `allow_nan` was said for the dataset.
-/// @throws InputError if the file cannot be written, ModelError on a non-finite value (dataset and index named)
+/// Names are paths ("/rail/deflection"); groups are made as needed. Non-finite numbers are refused; where
+/// `allow_nan` is said for a dataset, NaN stands for a value that is not known (never an infinity).
+/// Numbers are stored as 64-bit floats, texts as fixed-length UTF-8 strings (which Octave reads, too).
+/// @throws InputError if the file cannot be written, ModelError on a non-finite value (dataset and index
+/// named)
 class ResultFile {
  public:
   ResultFile(std::filesystem::path path, const Provenance& provenance);
@@ -55,7 +50,9 @@ class ResultFile {
   std::unique_ptr<Impl> impl_;
 };
 
-/// An HDF5 file to read. @throws InputError naming file, dataset and what was expected.
+/// An HDF5 file to read. Numbers of any type and strings of fixed or variable length are understood; a vector
+/// may also be stored as n x 1 or 1 x n (as MATLAB and Octave do).
+/// @throws InputError naming file, dataset and what was expected
 class ResultReader {
  public:
   explicit ResultReader(std::filesystem::path path);
