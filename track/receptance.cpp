@@ -1,0 +1,54 @@
+#include "track/receptance.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
+#include <complex>
+
+#include "easydyn/math/units.hpp"
+#include "easydyn/require.hpp"
+
+namespace easydyn::track {
+
+Eigen::VectorXd compute_static_response(const TrackModel& track, const Eigen::VectorXd& load) {
+  // the numbering by bay is already that of a narrow band
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> K(track.K());
+  if (K.info() != Eigen::Success)
+    throw SolverError(track.data().label() + ": static stiffness is singular; check supports and foundation");
+  return K.solve(load);
+}
+
+Eigen::MatrixXcd compute_harmonic_response(const TrackModel& track, const Eigen::VectorXd& load,
+                                           std::span<const double> frequencies) {
+  using namespace std::complex_literals;
+  using SparseComplex = Eigen::SparseMatrix<std::complex<double>>;
+  const SparseComplex K = track.K().cast<std::complex<double>>(), C = track.C().cast<std::complex<double>>(),
+                      M = track.M().cast<std::complex<double>>();
+  const Eigen::VectorXcd f = load.cast<std::complex<double>>();
+  Eigen::MatrixXcd response(track.size(), frequencies.size());
+  // dynamic stiffness at each frequency; its pattern is always the same
+  Eigen::SparseLU<SparseComplex, Eigen::NaturalOrdering<int>> lu;
+  for (size_t i = 0; i < frequencies.size(); ++i) {
+    const double frequency = frequencies[i], omega = 2 * units::pi * frequency;
+    require_not_negative(track.data().label(), "frequency", frequency, "Hz");
+    const SparseComplex dynamic = K + (1i * omega) * C - std::complex<double>(omega * omega) * M;
+    if (i == 0) lu.analyzePattern(dynamic);
+    lu.factorize(dynamic);
+    if (lu.info() != Eigen::Success)
+      throw SolverError(fmt::format("{}: dynamic stiffness is singular at {:g} Hz; add damping or avoid the "
+                                    "resonance",
+                                    track.data().label(), frequency));
+    response.col(i) = lu.solve(f);
+  }
+  return response;
+}
+
+Eigen::VectorXcd compute_rail_receptance(const TrackModel& track, double x_load, double x_response,
+                                         std::span<const double> frequencies) {
+  const Eigen::MatrixXcd q = compute_harmonic_response(track, track.rail_load(x_load, 1), frequencies);
+  const RailPoint point = track.rail_point(x_response);
+  Eigen::VectorXcd w = Eigen::VectorXcd::Zero(q.cols());
+  for (int i = 0; i < 4; ++i) w += point.shape.N[i] * q.row(point.dof[i]).transpose();
+  return w;
+}
+
+}  // namespace easydyn::track
