@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "soil/site.hpp"
+#include "soil/surface_loads.hpp"
+
+namespace easydyn::soil {
+
+/// How the lattice is made.
+struct LatticeOptions {
+  int degree = 4;               ///< polynomial degree of the elements, 3..6
+  bool half_model = true;       ///< only y >= 0, symmetry plane y = 0
+  int sponge_elements = 8;      ///< damped elements on each outer side and at the bottom, >= 0
+  double sponge_growth = 1.15;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
+  int lanes = 16;               ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
+};
+
+/// Structured lattice of rectangular hexahedra with Gauss-Lobatto-Legendre nodes, graded in depth and toward
+/// the boundaries. Element (ex, ey, ez) is the box between lines ex, ex + 1 of `x`, and so on; layer
+/// interfaces lie on z lines, and the material depends on ez only.
+struct Lattice {
+  int degree = 4;
+  bool half_model = true;
+  std::vector<double> x, y, z;  ///< element boundaries [m], ascending; z.back() = 0 (surface)
+  std::vector<int> layer;       ///< per z element (from the bottom): index into Site::layers
+  std::array<int, 2> sponge_x{}, sponge_y{}, sponge_z{};  ///< damped elements at the low and the high end
+
+  int nx() const { return static_cast<int>(x.size()) - 1; }
+  int ny() const { return static_cast<int>(y.size()) - 1; }
+  int nz() const { return static_cast<int>(z.size()) - 1; }
+  long elements() const { return static_cast<long>(nx()) * ny() * nz(); }
+  long nodes() const {
+    return (static_cast<long>(nx()) * degree + 1) * (static_cast<long>(ny()) * degree + 1) *
+           (static_cast<long>(nz()) * degree + 1);
+  }
+  long dofs() const { return 3 * nodes(); }
+
+  /// Undamped range [m] of each axis.
+  std::array<double, 2> interior_x() const { return {x[sponge_x[0]], x[x.size() - 1 - sponge_x[1]]}; }
+  std::array<double, 2> interior_y() const { return {y[sponge_y[0]], y[y.size() - 1 - sponge_y[1]]}; }
+  std::array<double, 2> interior_z() const { return {z[sponge_z[0]], z[z.size() - 1 - sponge_z[1]]}; }
+};
+
+/// Lattice that holds all receivers and footprints, `Site::margin` away from the sponge, and resolves the
+/// shortest shear wave of each layer at Site::highest_frequency with Site::points_per_wavelength mean node
+/// distances. Horizontal sizes follow the slowest layer, vertical sizes each layer.
+/// @throws ModelError if the site or an option is out of range, naming it, its value and the accepted range
+Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
+                     const LatticeOptions& options = {});
+
+}  // namespace easydyn::soil

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <memory>
+
+#include "soil/lattice.hpp"
+#include "soil/site.hpp"
+#include "soil/surface_loads.hpp"
+
+namespace easydyn::soil {
+
+/// How material damping is modelled; Layer::damping is the ratio at Site::damping_frequency in all of them.
+enum class DampingModel {
+  none,
+  stiffness_proportional,  ///< K (u + beta v), beta = damping / (pi f): ratio grows with frequency, small
+                           ///< step
+  constant_ratio           ///< memory variables: ratio nearly constant over the band, step nearly as undamped
+};
+
+/// What the solver may be told; the defaults suit railway vibration.
+struct SolverOptions {
+  int degree = 4;                 ///< polynomial degree, 3..6
+  bool half_model = true;         ///< only y >= 0; loads symmetric about y = 0
+  double step_safety = 0.9;       ///< time step / stable limit, 0..1
+  int threads = 0;                ///< 0: all cores
+  double output_step = 0;         ///< [s]; 0: 1 / (10 highest_frequency)
+  bool double_precision = false;  ///< of the fields (sums are always double)
+  DampingModel damping = DampingModel::constant_ratio;
+  double preload_time = 0.5;  ///< [s] before the first load sample, over which loads that start non-zero
+                              ///< are brought in smoothly; not part of the output
+  int sponge_elements = 8;    ///< see LatticeOptions
+  double sponge_growth = 1.15;
+  double sponge_damping = 120;  ///< [1/s] mass-proportional damping at the outer edge of the sponge
+  bool dashpots = true;         ///< viscous dashpots (Stacey) and far-field springs on the outer faces
+  double memory_limit = 0;      ///< [byte]; 0: 0.8 of the memory of the machine
+};
+
+/// What a run will cost, known before it starts.
+struct RunSummary {
+  long elements = 0, nodes = 0, dofs = 0;
+  double memory = 0;     ///< [byte] of the fields
+  double time_step = 0;  ///< [s]
+  long steps = 0;
+  double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel
+};
+
+/// Result of a run: nt output times, nr receivers, nl footprints.
+struct GroundMotion {
+  Eigen::VectorXd time;                    ///< nt [s]
+  Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
+  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, downward
+  Eigen::VectorXd taper;                   ///< nl: factor on each load
+  Eigen::VectorXd energy;                  ///< nt [J] kinetic + strain energy (of the half model if one)
+};
+
+/// Waves in a layered half-space under surface loads: 3D spectral elements, explicit leapfrog.
+///
+///   M u.. + C u. + K w = sum_j F_j(t) p_j,    w = u (elastic), u + beta u. or u - sum_l y_l zeta_l (damped)
+///
+/// M diagonal (GLL quadrature), C sponge and dashpots, p_j uniform pressure over footprint j.
+/// Nothing above Site::highest_frequency is claimed: outputs are decimated without a filter because the loads
+/// are expected to be band limited.
+class WaveSolver {
+ public:
+  /// @throws ModelError if site, loads or options are out of range, a receiver or footprint is outside the
+  ///         undamped ground, or the fields do not fit in memory
+  WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
+  ~WaveSolver();
+  WaveSolver(WaveSolver&&) noexcept;
+  WaveSolver& operator=(WaveSolver&&) noexcept;
+
+  const Lattice& lattice() const;
+  double time_step() const;  ///< [s]
+  long steps() const;
+  /// Sizes and the expected time; times the real kernel for a fraction of a second at the first call.
+  RunSummary compute_summary();
+
+  /// Runs from rest. `progress` gets the fraction done, 0..1, at most a few times per second.
+  /// @throws SolverError if the motion grows without bound (time, step and what to try)
+  GroundMotion run(const std::function<void(double fraction)>& progress = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace easydyn::soil
