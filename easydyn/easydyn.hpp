@@ -1,0 +1,12 @@
+#pragma once
+
+/// The multibody kernel in one include.
+#include "easydyn/error.hpp"
+#include "easydyn/forces/spring_damper.hpp"
+#include "easydyn/forces/vertical_spring_damper.hpp"
+#include "easydyn/math/units.hpp"
+#include "easydyn/mbs/system.hpp"
+#include "easydyn/sim/linearization.hpp"
+#include "easydyn/sim/modes.hpp"
+#include "easydyn/sim/newmark.hpp"
+#include "easydyn/sim/static_equilibrium.hpp"

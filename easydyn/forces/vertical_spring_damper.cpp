@@ -1,0 +1,39 @@
+#include "easydyn/forces/vertical_spring_damper.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "easydyn/mbs/motion_tree.hpp"
+
+namespace easydyn {
+
+using Eigen::Vector3d;
+
+VerticalSpringDamper::VerticalSpringDamper(std::string name, double stiffness, double damping, double height,
+                                           double preload)
+    : name_(std::move(name)), stiffness_(stiffness), damping_(damping), height_(height), preload_(preload) {
+  if (!(stiffness >= 0)) throw ModelError(fmt::format("spring \"{}\": k = {} N/m, must be >= 0", name_, stiffness));
+  if (!(damping >= 0)) throw ModelError(fmt::format("spring \"{}\": d = {} N s/m, must be >= 0", name_, damping));
+  if (!std::isfinite(height) || !std::isfinite(preload))
+    throw ModelError(fmt::format("spring \"{}\": height {} m and preload {} N must be finite", name_, height, preload));
+}
+
+void VerticalSpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,
+                                 const Vector3d& p_B) {
+  const Vector3d p_0A = frame_A.point(p_A), p_0B = frame_B.point(p_B);
+  const double rate = (frame_B.velocity_at(p_0B) - frame_A.velocity_at(p_0A)).z();
+  extension_ = p_0B.z() - p_0A.z() - height_;
+  force_ = preload_ - stiffness_ * extension_ - damping_ * rate;
+  frame_A.add_force({0, 0, -force_}, p_0A);
+  frame_B.add_force({0, 0, force_}, p_0B);
+
+  MotionTree* tree = frame_A.tree() ? frame_A.tree() : frame_B.tree();
+  if (tree) {
+    tree->energy().potential += 0.5 * stiffness_ * extension_ * extension_ - preload_ * extension_;
+    tree->energy().dissipated += damping_ * rate * rate;
+  }
+}
+
+}  // namespace easydyn

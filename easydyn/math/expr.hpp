@@ -1,0 +1,129 @@
+#pragma once
+
+#include <cmath>
+
+#include "easydyn/math/gradient.hpp"
+
+namespace easydyn {
+
+/// A scalar function f(q, t) with everything that dynamics needs of it, exact and propagated by the chain rule:
+///
+///   value     f
+///   rate      f.  = sum_i (df/dq_i) qd_i + df/dt            total time rate
+///   bias      f.. with qdd = 0                              velocity-dependent part of f..
+///   gradient  df/dq_i                                       partial velocities
+///
+/// so that f.. = gradient . qdd + bias. Coordinates, the time and numbers convert to Expr; + - * / and the
+/// functions below apply. A function of the user's enters by its value and two derivatives: `apply`.
+class Expr {
+ public:
+  Expr(double constant = 0) : value_(constant) {}  // NOLINT: numbers are expressions
+
+  /// The coordinate q_i with its rate.
+  static Expr coordinate(int i, double q, double qd) { return Expr(q, qd, 0, Gradient::unit(i)); }
+  /// A given function of time f(t): imposed motion.
+  static Expr of_time(double f, double f_dot, double f_ddot) { return Expr(f, f_dot, f_ddot, Gradient()); }
+  /// f(a) from f, f', f'' taken at the value of a.
+  static Expr apply(const Expr& a, double f, double f1, double f2) {
+    if (a.is_constant()) return Expr(f);
+    return Expr(f, f1 * a.rate_, f2 * a.rate_ * a.rate_ + f1 * a.bias_, Gradient::scale(f1, a.gradient_));
+  }
+
+  double value() const { return value_; }
+  double rate() const { return rate_; }
+  double bias() const { return bias_; }
+  const Gradient& gradient() const { return gradient_; }
+  /// True for numbers and functions of numbers: depends neither on q nor on t.
+  bool is_constant() const { return constant_; }
+
+  Expr operator-() const { return linear(-1, *this, 0, Expr()); }
+  friend Expr operator+(const Expr& a, const Expr& b) { return linear(1, a, 1, b); }
+  friend Expr operator-(const Expr& a, const Expr& b) { return linear(1, a, -1, b); }
+  friend Expr operator*(const Expr& a, const Expr& b) {
+    if (a.constant_) return linear(a.value_, b, 0, Expr());
+    if (b.constant_) return linear(b.value_, a, 0, Expr());
+    return Expr(a.value_ * b.value_, a.rate_ * b.value_ + a.value_ * b.rate_,
+                a.bias_ * b.value_ + 2 * a.rate_ * b.rate_ + a.value_ * b.bias_,
+                Gradient::combine(b.value_, a.gradient_, a.value_, b.gradient_));
+  }
+  friend Expr operator/(const Expr& a, const Expr& b) {
+    const double r = 1 / b.value_;
+    return a * apply(b, r, -r * r, 2 * r * r * r);
+  }
+  Expr& operator+=(const Expr& b) { return *this = *this + b; }
+  Expr& operator-=(const Expr& b) { return *this = *this - b; }
+  Expr& operator*=(const Expr& b) { return *this = *this * b; }
+  Expr& operator/=(const Expr& b) { return *this = *this / b; }
+
+ private:
+  Expr(double value, double rate, double bias, Gradient gradient)
+      : value_(value), rate_(rate), bias_(bias), constant_(false), gradient_(std::move(gradient)) {}
+  static Expr linear(double a, const Expr& A, double b, const Expr& B) {
+    const double value = a * A.value_ + b * B.value_;
+    if (A.constant_ && B.constant_) return Expr(value);
+    return Expr(value, a * A.rate_ + b * B.rate_, a * A.bias_ + b * B.bias_,
+                Gradient::combine(a, A.gradient_, b, B.gradient_));
+  }
+
+  double value_ = 0, rate_ = 0, bias_ = 0;
+  bool constant_ = true;
+  Gradient gradient_;
+};
+
+inline Expr sin(const Expr& a) {
+  const double s = std::sin(a.value());
+  return Expr::apply(a, s, std::cos(a.value()), -s);
+}
+inline Expr cos(const Expr& a) {
+  const double c = std::cos(a.value());
+  return Expr::apply(a, c, -std::sin(a.value()), -c);
+}
+inline Expr tan(const Expr& a) {
+  const double t = std::tan(a.value()), d = 1 + t * t;
+  return Expr::apply(a, t, d, 2 * t * d);
+}
+inline Expr asin(const Expr& a) {
+  const double x = a.value(), d = 1 / std::sqrt(1 - x * x);
+  return Expr::apply(a, std::asin(x), d, x * d * d * d);
+}
+inline Expr acos(const Expr& a) {
+  const double x = a.value(), d = 1 / std::sqrt(1 - x * x);
+  return Expr::apply(a, std::acos(x), -d, -x * d * d * d);
+}
+inline Expr atan(const Expr& a) {
+  const double x = a.value(), d = 1 / (1 + x * x);
+  return Expr::apply(a, std::atan(x), d, -2 * x * d * d);
+}
+inline Expr sqrt(const Expr& a) {
+  const double r = std::sqrt(a.value());
+  return Expr::apply(a, r, 0.5 / r, -0.25 / (r * a.value()));
+}
+inline Expr exp(const Expr& a) {
+  const double e = std::exp(a.value());
+  return Expr::apply(a, e, e, e);
+}
+inline Expr log(const Expr& a) {
+  const double x = a.value();
+  return Expr::apply(a, std::log(x), 1 / x, -1 / (x * x));
+}
+inline Expr sinh(const Expr& a) {
+  const double s = std::sinh(a.value());
+  return Expr::apply(a, s, std::cosh(a.value()), s);
+}
+inline Expr cosh(const Expr& a) {
+  const double c = std::cosh(a.value());
+  return Expr::apply(a, c, std::sinh(a.value()), c);
+}
+inline Expr tanh(const Expr& a) {
+  const double t = std::tanh(a.value()), d = 1 - t * t;
+  return Expr::apply(a, t, d, -2 * t * d);
+}
+/// a^p for a constant exponent.
+inline Expr pow(const Expr& a, double p) {
+  const double x = a.value();
+  return Expr::apply(a, std::pow(x, p), p * std::pow(x, p - 1), p * (p - 1) * std::pow(x, p - 2));
+}
+/// Angle of the point (x, y), continuous through all four quadrants (jump at the negative x axis).
+Expr atan2(const Expr& y, const Expr& x);
+
+}  // namespace easydyn

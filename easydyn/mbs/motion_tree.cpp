@@ -1,0 +1,174 @@
+#include "easydyn/mbs/motion_tree.hpp"
+
+#include "easydyn/error.hpp"
+
+namespace easydyn {
+
+using Eigen::Vector3d;
+using spatial::Twist;
+using spatial::Wrench;
+
+namespace {
+thread_local MotionTree* current_tree = nullptr;
+}
+
+MotionTree* MotionTree::current() { return current_tree; }
+MotionTree::Scope::Scope(MotionTree& tree) : previous_(current_tree) { current_tree = &tree; }
+MotionTree::Scope::~Scope() { current_tree = previous_; }
+
+void MotionTree::clear() {
+  size_ = 0;
+  bodies_.clear();
+  energy_ = {};
+  velocities_known_ = false;
+}
+
+int MotionTree::add_rotation(int parent, const Vector3d& axis_0, const Vector3d& p_0, const Expr& angle) {
+  if (size_ == static_cast<int>(joints_.size())) joints_.emplace_back();
+  Joint& k = joints_[static_cast<std::size_t>(size_)];
+  k.parent = parent;
+  k.is_rotation = true;
+  k.axis = axis_0;
+  k.point = p_0;
+  k.rate = angle.rate();
+  k.bias = angle.bias();
+  k.gradient = angle.gradient();
+  return size_++;
+}
+
+int MotionTree::add_translation(int parent, const Vector3d& axis_0, const Expr& displacement) {
+  const int k = add_rotation(parent, axis_0, Vector3d::Zero(), displacement);
+  joints_[static_cast<std::size_t>(k)].is_rotation = false;
+  return k;
+}
+
+void MotionTree::add_body(const Inertia& inertia, const Eigen::Matrix3d& R, const Vector3d& p, int motion) {
+  bodies_.push_back({inertia, R, p, motion});
+}
+
+void MotionTree::compute_velocities() {
+  // The common point: near the mechanism, the same for the same state.
+  O_ = bodies_.empty() ? Vector3d::Zero() : bodies_.front().p;
+
+  for (int i = 0; i < size_; ++i) {
+    Joint& k = joints_[static_cast<std::size_t>(i)];
+    k.S.w = k.is_rotation ? k.axis : Vector3d::Zero();
+    k.S.v = k.is_rotation ? Vector3d(k.axis.cross(O_ - k.point)) : k.axis;
+    k.V = k.parent >= 0 ? joints_[static_cast<std::size_t>(k.parent)].V : Twist{};
+    k.V += k.rate * k.S;
+    k.A_bias = k.bias * k.S;
+    k.A_bias += k.rate * spatial::cross(k.V, k.S);
+    k.applied = {};
+  }
+
+  body_inertia_.clear();
+  for (const Carried& b : bodies_)
+    body_inertia_.push_back(
+        spatial::Inertia::of_body(b.inertia.mass, b.p - O_, b.R * b.inertia.J * b.R.transpose()));
+  velocities_known_ = true;
+}
+
+void MotionTree::compute_accelerations(const double* qdd) {
+  for (int i = 0; i < size_; ++i) {
+    Joint& k = joints_[static_cast<std::size_t>(i)];
+    k.A = k.parent >= 0 ? joints_[static_cast<std::size_t>(k.parent)].A : Twist{};
+    k.A += k.A_bias;
+    if (qdd) k.A += k.gradient.dot(qdd) * k.S;
+  }
+}
+
+void MotionTree::add_residual(const double* qd, double* r, double* drive_power) {
+  for (int i = 0; i < size_; ++i) {
+    Joint& k = joints_[static_cast<std::size_t>(i)];
+    k.f = {};
+    k.f -= k.applied;
+  }
+
+  // Each body brings its inertia forces ...
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].motion < 0) continue;
+    Joint& k = joints_[static_cast<std::size_t>(bodies_[b].motion)];
+    const spatial::Inertia& I = body_inertia_[b];
+    k.f += I * k.A;
+    k.f += spatial::cross(k.V, I * k.V);
+  }
+
+  // ... which are handed down to the ground and projected on the way.
+  double power = 0;
+  for (int i = size_ - 1; i >= 0; --i) {
+    Joint& k = joints_[static_cast<std::size_t>(i)];
+    const double tau = spatial::dot(k.S, k.f);
+    for (const Gradient::Entry& g : k.gradient) r[g.coordinate] += g.value * tau;
+    power += tau * (k.rate - k.gradient.dot(qd));
+    if (k.parent >= 0) joints_[static_cast<std::size_t>(k.parent)].f += k.f;
+  }
+  if (drive_power) *drive_power = power;
+}
+
+void MotionTree::add_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M) {
+  for (int i = 0; i < size_; ++i) joints_[static_cast<std::size_t>(i)].composite = {};
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (bodies_[b].motion >= 0)
+      joints_[static_cast<std::size_t>(bodies_[b].motion)].composite += body_inertia_[b];
+
+  for (int i = size_ - 1; i >= 0; --i) {
+    const Joint& k = joints_[static_cast<std::size_t>(i)];
+    const Wrench momentum = k.composite * k.S;
+    for (int j = i; j >= 0; j = joints_[static_cast<std::size_t>(j)].parent) {
+      const Joint& a = joints_[static_cast<std::size_t>(j)];
+      const double H = spatial::dot(a.S, momentum);
+      for (const Gradient::Entry& gk : k.gradient)
+        for (const Gradient::Entry& ga : a.gradient) {
+          const double m = gk.value * ga.value * H;
+          M(gk.coordinate, ga.coordinate) += m;
+          if (j != i) M(ga.coordinate, gk.coordinate) += m;
+        }
+    }
+    if (k.parent >= 0) joints_[static_cast<std::size_t>(k.parent)].composite += k.composite;
+  }
+}
+
+double MotionTree::kinetic_energy() const {
+  double T = 0;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].motion < 0) continue;
+    const Twist& V = joints_[static_cast<std::size_t>(bodies_[b].motion)].V;
+    T += 0.5 * spatial::dot(V, body_inertia_[b] * V);
+  }
+  return T;
+}
+
+void MotionTree::check_velocities() const {
+  if (!velocities_known_)
+    throw ModelError("velocities and forces of a frame are known in forces(), not yet in positions()");
+}
+
+Vector3d MotionTree::angular_velocity(int motion) const {
+  check_velocities();
+  return joints_[static_cast<std::size_t>(motion)].V.w;
+}
+
+Vector3d MotionTree::velocity_at(int motion, const Vector3d& p) const {
+  check_velocities();
+  const Twist& V = joints_[static_cast<std::size_t>(motion)].V;
+  return V.v + V.w.cross(p - O_);
+}
+
+Vector3d MotionTree::acceleration_at(int motion, const Vector3d& p) const {
+  const Joint& k = joints_[static_cast<std::size_t>(motion)];
+  const Vector3d d = p - O_;
+  // The spatial acceleration is that of the field at a fixed point: add w x v for the material point.
+  return k.A.v + k.A.w.cross(d) + k.V.w.cross(k.V.v + k.V.w.cross(d));
+}
+
+void MotionTree::add_wrench(int motion, const Vector3d& force, const Vector3d& p) {
+  check_velocities();
+  joints_[static_cast<std::size_t>(motion)].applied += {(p - O_).cross(force), force};
+}
+
+void MotionTree::add_moment(int motion, const Vector3d& moment) {
+  check_velocities();
+  joints_[static_cast<std::size_t>(motion)].applied += {moment, Vector3d::Zero()};
+}
+
+}  // namespace easydyn

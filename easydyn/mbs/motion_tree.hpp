@@ -1,0 +1,104 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "easydyn/math/expr.hpp"
+#include "easydyn/math/inertia.hpp"
+#include "easydyn/math/spatial.hpp"
+
+namespace easydyn {
+
+/// Energy accounts that the force elements keep during an evaluation.
+struct EnergyAccounts {
+  double potential = 0;   ///< [J]
+  double dissipated = 0;  ///< power turned into heat [W]
+  double supplied = 0;    ///< power brought in by external forces and drives [W]
+};
+
+/// The varying motions of a system at one instant, and the sweeps over them.
+///
+/// Motion k leads from the frame of its parent by a scalar e_k(q, t) along the screw S_k (world axes, about the
+/// common point O). A forward sweep gives the twists and bias accelerations
+///
+///   V_k = V_p + S_k e_k.          A_k = A_p + S_k e_k.. + V_k x S_k e_k.
+///
+/// and a backward sweep of the wrenches gives, with the gradients g_k = de_k/dq, the residual and mass matrix
+///
+///   f_k = sum over the bodies carried (I A + V x* I V - applied wrench)        tau_k = S_k . f_k
+///   r = sum_k g_k tau_k           M = sum_k sum_j g_k g_j^T (S_j . Ic_k S_k),  j = k and its ancestors.
+///
+/// Coordinates that are shared, geared or hidden in functions are exact, since only the projection with g_k
+/// knows about them. Reference: Featherstone 2008 (RNEA ch. 5, CRBA ch. 6), projected.
+class MotionTree {
+ public:
+  struct Carried {
+    Inertia inertia;     // body axes, about the centre of mass
+    Eigen::Matrix3d R;   // R_0G
+    Eigen::Vector3d p;   // p_0G
+    int motion;          // -1: fixed to the ground
+  };
+
+  /// The tree that frames attach to while positions() runs in this thread.
+  static MotionTree* current();
+  /// Makes a tree current for the lifetime of the object.
+  class Scope {
+   public:
+    explicit Scope(MotionTree& tree);
+    ~Scope();
+    Scope(const Scope&) = delete;
+
+   private:
+    MotionTree* previous_;
+  };
+
+  void clear();
+  int add_rotation(int parent, const Eigen::Vector3d& axis_0, const Eigen::Vector3d& p_0, const Expr& angle);
+  int add_translation(int parent, const Eigen::Vector3d& axis_0, const Expr& displacement);
+  void add_body(const Inertia& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& p, int motion);
+
+  /// Screws, twists and bias accelerations, once all motions and bodies are known.
+  void compute_velocities();
+  /// Accelerations A_k for given qdd (null: bias only).
+  void compute_accelerations(const double* qdd);
+  /// r += M qdd + h - Q from the accelerations last computed; drive_power: power of imposed motions [W].
+  void add_residual(const double* qd, double* r, double* drive_power);
+  /// M (n x n, symmetric) += the mass matrix.
+  void add_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
+  double kinetic_energy() const;
+
+  Eigen::Vector3d angular_velocity(int motion) const;
+  Eigen::Vector3d velocity_at(int motion, const Eigen::Vector3d& p) const;
+  Eigen::Vector3d acceleration_at(int motion, const Eigen::Vector3d& p) const;
+  void add_wrench(int motion, const Eigen::Vector3d& force, const Eigen::Vector3d& p);
+  void add_moment(int motion, const Eigen::Vector3d& moment);
+
+  const std::vector<Carried>& bodies() const { return bodies_; }
+  EnergyAccounts& energy() { return energy_; }
+  const EnergyAccounts& energy() const { return energy_; }
+
+ private:
+  struct Joint {
+    int parent;
+    bool is_rotation;
+    Eigen::Vector3d axis, point;
+    double rate, bias;
+    Gradient gradient;
+    spatial::Twist S, V, A;       // screw, twist, acceleration (bias, or with qdd)
+    spatial::Twist A_bias;        // S e..(qdd = 0) + V x S e., of this motion alone
+    spatial::Wrench applied;      // about O
+    spatial::Wrench f;            // backward sweep
+    spatial::Inertia composite;   // backward sweep
+  };
+  void check_velocities() const;
+
+  std::vector<Joint> joints_;
+  int size_ = 0;  // joints in use; the others keep their memory
+  std::vector<Carried> bodies_;
+  std::vector<spatial::Inertia> body_inertia_;  // about O, world axes
+  Eigen::Vector3d O_ = Eigen::Vector3d::Zero();
+  bool velocities_known_ = false;
+  EnergyAccounts energy_;
+};
+
+}  // namespace easydyn

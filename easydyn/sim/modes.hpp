@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <vector>
+
+#include "easydyn/sim/linearization.hpp"
+
+namespace easydyn {
+
+/// One mode x(t) = Re(shape exp(pole t)) of small motions.
+struct Mode {
+  std::complex<double> pole;  ///< [1/s]
+  double frequency;           ///< natural frequency |pole| / (2 pi) [Hz]
+  double damping;             ///< ratio -Re(pole) / |pole|; 0 for a pole at zero
+  Eigen::VectorXcd shape;     ///< n coordinates, largest entry 1
+};
+
+/// Modes of M x.. + C x. + K x = 0, sorted by frequency: one per pair of complex poles, and one per real pole.
+///
+/// From the eigenvalues of the state matrix [0 I; -M^-1 K, -M^-1 C]; without damping (C = 0) and with symmetric K
+/// from the symmetric generalised problem, to machine precision.
+/// @throws SolverError if M is singular or the eigenvalue solver fails
+std::vector<Mode> compute_modes(const Linearization& linearization);
+
+}  // namespace easydyn

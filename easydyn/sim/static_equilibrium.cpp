@@ -1,0 +1,223 @@
+#include "easydyn/sim/static_equilibrium.hpp"
+
+#include <fmt/format.h>
+#include <kinsol/kinsol.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <exception>
+#include <sundials/sundials_context.hpp>
+
+#include "easydyn/error.hpp"
+#include "easydyn/sim/condensation.hpp"
+
+namespace easydyn {
+
+using Eigen::VectorXd;
+
+namespace {
+
+// The condensed static problem: z = (bodies' coordinates, port forces).
+class StaticProblem {
+ public:
+  StaticProblem(System& system, const State& guess)
+      : system_(system), state_(guess), n_(system.body_size()), condensation_(system, 0, 0, 1) {
+    const int n_structures = static_cast<int>(guess.q.size()) - n_;
+    system_.evaluate(state_);
+    n_ports_ = static_cast<int>(system_.ports().size());
+
+    // Structures carry the given inertia and damping forces; rates at the ports are the given ones.
+    VectorXd b(n_structures);
+    int at = 0;
+    for (const auto& s : system_.structures()) {
+      b.segment(at, s->size()) = -(s->M() * guess.qdd.segment(n_ + at, s->size()) +
+                                   s->C() * guess.qd.segment(n_ + at, s->size()));
+      at += s->size();
+    }
+    condensation_.solve(b, system_.ports());
+    condensation_.set_bases(VectorXd::Zero(n_structures), 1, guess.qd.tail(n_structures), 0);
+  }
+
+  int size() const { return n_ + n_ports_; }
+
+  VectorXd initial() {
+    VectorXd z(size());
+    z.head(n_) = state_.q.head(n_);
+    for (int p = 0; p < n_ports_; ++p) z[n_ + p] = system_.ports()[static_cast<std::size_t>(p)].force;
+    return z;
+  }
+
+  void residual(const VectorXd& z, VectorXd& r) {
+    const VectorXd F = z.tail(n_ports_);
+    system_.compute_body_residual(
+        state_.t, z.data(), state_.qd.data(), state_.qdd.data(),
+        [&](int k, const PortShape& shape) { return condensation_.motion(k, shape, F); }, r.data());
+    for (int p = 0; p < n_ports_; ++p) r[n_ + p] = F[p] - system_.ports()[static_cast<std::size_t>(p)].force;
+  }
+
+  State solution(const VectorXd& z) {
+    State s = state_;
+    s.q.head(n_) = z.head(n_);
+    condensation_.compute_response(z.tail(n_ports_), s.q.tail(s.q.size() - n_));
+    return s;
+  }
+
+  std::string name(int i) const {
+    return i < n_ ? "coordinate \"" + system_.coordinate_name(i) + "\"" : fmt::format("port force {}", i - n_);
+  }
+
+  std::exception_ptr thrown;  // by the user's program, inside KINSOL
+
+ private:
+  System& system_;
+  State state_;
+  int n_, n_ports_ = 0;
+  Condensation condensation_;
+};
+
+int kinsol_residual(N_Vector z, N_Vector r, void* data) {
+  auto& problem = *static_cast<StaticProblem*>(data);
+  const VectorXd z_copy = Eigen::Map<VectorXd>(N_VGetArrayPointer(z), problem.size());
+  VectorXd value(problem.size());
+  try {
+    problem.residual(z_copy, value);
+  } catch (...) {
+    problem.thrown = std::current_exception();
+    return -1;
+  }
+  Eigen::Map<VectorXd>(N_VGetArrayPointer(r), problem.size()) = value;
+  return value.allFinite() ? 0 : 1;
+}
+
+void ignore_message(int, const char*, const char*, char*, void*) {}  // flags are turned into SolverError
+
+// KINSOL's objects, freed in the right order.
+struct Kinsol {
+  sundials::Context context;
+  N_Vector z = nullptr, z_scale = nullptr, r_scale = nullptr;
+  SUNMatrix matrix = nullptr;
+  SUNLinearSolver linear = nullptr;
+  void* memory = nullptr;
+  ~Kinsol() {
+    KINFree(&memory);
+    SUNLinSolFree(linear);
+    SUNMatDestroy(matrix);
+    N_VDestroy(z);
+    N_VDestroy(z_scale);
+    N_VDestroy(r_scale);
+  }
+};
+
+[[noreturn]] void throw_unsettled(StaticProblem& problem, const VectorXd& z, const std::string& why) {
+  VectorXd r(problem.size());
+  problem.residual(z, r);
+  Eigen::Index worst = 0;
+  const double largest = r.cwiseAbs().maxCoeff(&worst);
+  throw SolverError(fmt::format("static equilibrium: {}; largest residual {:.3g} N (or N m) at {}, value {:.6g}; "
+                                "is it held by a spring, and is the first guess near?",
+                                why, largest, problem.name(static_cast<int>(worst)), z[worst]));
+}
+
+void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+  Kinsol k;
+  const int n = problem.size();
+  k.z = N_VMake_Serial(n, z.data(), k.context);
+  k.z_scale = N_VNew_Serial(n, k.context);
+  k.r_scale = N_VNew_Serial(n, k.context);
+  N_VConst(1.0, k.z_scale);
+  N_VConst(1 / reference, k.r_scale);
+  k.matrix = SUNDenseMatrix(n, n, k.context);
+  k.linear = SUNLinSol_Dense(k.z, k.matrix, k.context);
+  k.memory = KINCreate(k.context);
+  KINSetErrHandlerFn(k.memory, ignore_message, nullptr);
+  KINInit(k.memory, kinsol_residual, k.z);
+  KINSetUserData(k.memory, &problem);
+  KINSetLinearSolver(k.memory, k.linear, k.matrix);
+  KINSetNumMaxIters(k.memory, options.max_iterations);
+  KINSetFuncNormTol(k.memory, options.tolerance);
+  KINSetScaledStepTol(k.memory, 1e-15);
+  KINSetMaxSetupCalls(k.memory, 1);
+  const int flag = KINSol(k.memory, k.z, KIN_LINESEARCH, k.z_scale, k.r_scale);
+  if (problem.thrown) std::rethrow_exception(problem.thrown);
+  if (flag < 0 && flag != KIN_LINESEARCH_NONCONV) {
+    char* flag_name = KINGetReturnFlagName(flag);
+    const std::string why = std::string("KINSOL stopped with ") + flag_name;
+    free(flag_name);
+    throw_unsettled(problem, z, why);
+  }
+}
+
+// Undamped Newton with a difference Jacobian, while it helps.
+void polish(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+  const int n = problem.size();
+  VectorXd r(n), shifted, r_shifted(n);
+  problem.residual(z, r);
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    Eigen::MatrixXd J(n, n);
+    shifted = z;
+    for (int i = 0; i < n; ++i) {
+      const double delta = 1e-7 * std::max(std::abs(z[i]), 1e-2);
+      shifted[i] = z[i] + delta;
+      problem.residual(shifted, r_shifted);
+      J.col(i) = (r_shifted - r) / (shifted[i] - z[i]);
+      shifted[i] = z[i];
+    }
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(J);
+    if (!lu.isInvertible()) throw_unsettled(problem, z, "the stiffness matrix is singular");
+    shifted = z - lu.solve(r);
+    problem.residual(shifted, r_shifted);
+    const bool better = r_shifted.lpNorm<Eigen::Infinity>() < 0.5 * r.lpNorm<Eigen::Infinity>();
+    if (r_shifted.lpNorm<Eigen::Infinity>() < r.lpNorm<Eigen::Infinity>()) {
+      z = shifted;
+      r = r_shifted;
+    }
+    if (!better) break;
+  }
+  if (!(r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference))
+    throw_unsettled(problem, z, "the iteration does not settle");
+}
+
+}  // namespace
+
+State solve_static_equilibrium(System& system, const State& guess, const StaticOptions& options) {
+  StaticProblem problem(system, guess);
+  if (problem.size() == 0) return problem.solution(VectorXd());
+  VectorXd z = problem.initial(), r(problem.size());
+
+  // Forces are measured against the largest one that acts at the start with all springs at rest.
+  problem.residual(z, r);
+  const double reference = std::max(r.lpNorm<Eigen::Infinity>(), 1.0);
+  solve_with_kinsol(problem, z, reference, options);
+  polish(problem, z, reference, options);
+  return problem.solution(z);
+}
+
+State solve_static_equilibrium(System& system, const StaticOptions& options) {
+  return solve_static_equilibrium(system, system.initial_state(), options);
+}
+
+State solve_quasi_static_motion(System& system, const State& guess, double dt, const StaticOptions& options) {
+  if (!(dt > 0)) throw ModelError(fmt::format("quasi-static motion: dt = {} s, must be > 0", dt));
+  State at_rest = guess;
+  at_rest.qd.setZero();
+  at_rest.qdd.setZero();
+
+  // Equilibria around the instant: fourth-order central differences give rates and accelerations.
+  std::array<VectorXd, 5> q;
+  State shifted = at_rest;
+  for (int k = 0; k < 5; ++k) {
+    shifted.t = guess.t + (k - 2) * dt;
+    shifted = solve_static_equilibrium(system, shifted, options);
+    q[static_cast<std::size_t>(k)] = shifted.q;
+  }
+  State start = at_rest;
+  start.q = q[2];
+  start.qd = (q[0] - 8 * q[1] + 8 * q[3] - q[4]) / (12 * dt);
+  start.qdd = (-q[0] + 16 * q[1] - 30 * q[2] + 16 * q[3] - q[4]) / (12 * dt * dt);
+  return solve_static_equilibrium(system, start, options);
+}
+
+}  // namespace easydyn
