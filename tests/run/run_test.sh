@@ -1,0 +1,189 @@
+#!/usr/bin/env bash
+# ./run in a small tree of its own, with stand-ins for dpkg, apt, cmake, ctest and the programs: nothing is built.
+set -euo pipefail
+here=$(cd -- "$(dirname -- "$0")" && pwd)
+# shellcheck source=tests/run/check.sh
+source "$here/check.sh"
+
+# The tree: two programs, one of which has a site.
+tree="$scratch/a house"
+mkdir -p "$tree/examples/sites" "$scratch/bin" "$scratch/elsewhere"
+cp "$here/../../run" "$tree/run"
+printf '// Tram on a soft site.\n//\n// Run: ./run tram\n' >"$tree/examples/tram.cpp"
+printf '// Double pendulum, from positions only.\n' >"$tree/examples/double_pendulum.cpp"
+touch "$tree/examples/sites/tram.toml"
+
+# Stand-ins. $scratch/log is what was called; $scratch/fail_* makes a step fail with the code it holds.
+stand_in() {
+  printf '#!/usr/bin/env bash\nset -eu\nscratch=%q\n' "$scratch" >"$scratch/bin/$1"
+  cat >>"$scratch/bin/$1"
+  chmod +x "$scratch/bin/$1"
+}
+stand_in dpkg-query <<'END'
+if [[ -e $scratch/missing && $(<"$scratch/missing") == "${!#}" ]]; then exit 1; fi
+echo installed
+END
+stand_in apt-get <<'END'
+echo "apt-get $*" >>"$scratch/log"
+END
+stand_in sudo <<'END'
+"$@"
+END
+stand_in ctest <<'END'
+echo "ctest $*" >>"$scratch/log"
+[[ $* == *sanitize* && -e $scratch/fail_sanitize ]] && exit 8
+echo "100% tests passed, 0 tests failed out of 1"
+END
+stand_in cmake <<'END'
+echo "cmake $*" >>"$scratch/log"
+if [[ -e $scratch/fail_cmake ]]; then echo "error: no such thing"; exit "$(<"$scratch/fail_cmake")"; fi
+while (($# > 0)); do
+  case $1 in
+    -B) mkdir -p "$2/bin"; touch "$2/build.ninja"; shift ;;
+    --build)
+      for program in tram double_pendulum; do
+        cp "$scratch/bin/program" "$2/bin/$program"
+      done
+      cp "$scratch/bin/soil" "$2/bin/soil"
+      shift ;;
+  esac
+  shift
+done
+END
+stand_in program <<'END'
+echo "$(basename "$0") $*" >>"$scratch/log"
+if [[ $* == *--help* ]]; then echo "help of $(basename "$0")"; exit 0; fi
+if [[ -e $scratch/fail_program ]]; then exit "$(<"$scratch/fail_program")"; fi
+while (($# > 0)); do
+  case $1 in
+    --output) mkdir -p "$2"; touch "$2/surface_loads.h5"; shift ;;
+    --output=*) mkdir -p "${1#*=}"; touch "${1#*=}/surface_loads.h5" ;;
+  esac
+  shift
+done
+END
+stand_in soil <<'END'
+echo "soil $*" >>"$scratch/log"
+if [[ -e $scratch/fail_soil_$1 ]]; then exit "$(<"$scratch/fail_soil_$1")"; fi
+if [[ $1 == report ]]; then echo new >"$2/report.html"; fi
+END
+export PATH="$scratch/bin:$PATH"
+
+run() {
+  : >"$scratch/log"
+  call "$tree/run" "$@"
+  log=$(<"$scratch/log")
+}
+cd "$tree"
+
+# The list.
+run
+expect "alone, it succeeds" is "$code" 0
+expect "the list has the title of a program" has "$out" "Tram on a soft site."
+expect "the list has every program" has "$out" "double_pendulum    Double pendulum, from positions only."
+expect "the list has the commands" has "$out" "  bench [NAME]"
+expect "listing builds nothing" is "$log" ""
+alone=$out
+run help
+expect "help is the list" is "$out" "$alone"
+
+# Unknown names.
+run trm
+expect "an unknown name is refused" is "$code" 2
+expect "the nearest program is named" has "$err" 'no program "trm"; did you mean tram?'
+run bnech
+expect "the nearest command is named" has "$err" "did you mean bench?"
+run ../run
+expect "a path is no name" is "$code" 2
+run bench kernle
+expect "an unknown benchmark is refused" is "$code" 2
+expect "nothing is built for an unknown name" is "$log" ""
+
+# The tram, from the repository root.
+run tram --speed 40
+expect "the three steps succeed" is "$code" 0
+expect "only the needed targets are built" has "$log" "--target tram soil_program"
+expect "step 1 gets the options" has "$log" "tram --output results/tram --speed 40"
+expect "step 2" has "$log" "soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output results/tram"
+expect "step 3" has "$log" "soil report results/tram"
+expect "the report is named last" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
+expect "the build is quiet" lacks "$out$err" "cmake"
+expect "apt is left alone when nothing is missing" lacks "$log" "apt-get"
+
+# Again, from elsewhere: configured once, absolute paths.
+cd "$scratch/elsewhere"
+run tram
+expect "it is configured once" lacks "$log" "cmake -S"
+expect "from elsewhere, results stay in the repository" has "$log" "tram --output $tree/results/tram"
+expect "from elsewhere, the report is named" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
+expect "from elsewhere, nothing is left here" is "$(ls -A)" ""
+
+# An output folder of the user's.
+run tram --output mine
+expect "--output DIR reaches step 1 as given" has "$log" "tram --output mine"
+expect "--output DIR reaches step 2" has "$log" "mine/surface_loads.h5 --output mine"
+expect "--output DIR reaches step 3" has "$log" "soil report mine"
+expect "the report is there" is "$out" "$scratch/elsewhere/mine/report.html"
+run tram --output=other
+expect "--output=DIR is understood" is "$out" "$scratch/elsewhere/other/report.html"
+cd "$tree"
+
+# Help goes to the program and runs nothing else.
+run tram --help
+expect "help of the program" is "$out" "help of tram"
+expect "no soil after help" lacks "$log" "soil run"
+expect "an earlier report survives help" test -e results/tram/report.html
+
+# Failing steps.
+echo 2 >"$scratch/fail_program"
+run tram --sped 40
+expect "wrong options keep their code" is "$code" 2
+expect "wrong options leave the earlier report" test -e results/tram/report.html
+echo 1 >"$scratch/fail_program"
+run tram
+expect "the code of step 1" is "$code" 1
+expect "no path after a failure of step 1" is "$out" ""
+expect "no soil after a failure of step 1" lacks "$log" "soil run"
+expect "no stale report after a failure of step 1" test ! -e results/tram/report.html
+rm "$scratch/fail_program"
+for step in run report; do
+  run tram
+  echo 3 >"$scratch/fail_soil_$step"
+  run tram
+  expect "the code of soil $step" is "$code" 3
+  expect "no path after a failure of soil $step" is "$out" ""
+  expect "no stale report after a failure of soil $step" is "$(ls -A results/tram)" "surface_loads.h5"
+  rm "$scratch/fail_soil_$step"
+done
+echo 4 >"$scratch/fail_cmake"
+run tram
+expect "the code of the build" is "$code" 4
+expect "the end of the build log is shown" has "$err" "error: no such thing"
+expect "nothing runs after a failed build" lacks "$log" "tram --output"
+rm "$scratch/fail_cmake"
+
+# Another program: its own folder, no soil.
+run double_pendulum
+expect "a program without a site" has "$log" "double_pendulum --output results/double_pendulum"
+expect "has no soil" lacks "$log" "soil"
+
+# Missing packages.
+echo libfmt-dev >"$scratch/missing"
+run double_pendulum
+expect "the package list is renewed first" has "$log" "apt-get update"
+expect "only what is missing is installed" has "$log" "apt-get install -y --no-install-recommends libfmt-dev
+cmake"
+rm "$scratch/missing"
+
+# Tests: sanitizers first, the release suite last, and both count.
+run test -R Rail
+expect "tests succeed" is "$code" 0
+expect "options go to ctest" has "$log" "-R Rail"
+expect "the closing line is ctest's" is "$(tail -n 1 <<<"$out")" "100% tests passed, 0 tests failed out of 1"
+expect "the release suite is last" has "$(tail -n 1 <<<"$log")" "build/test"
+touch "$scratch/fail_sanitize"
+run test
+expect "a failure under the sanitizers counts" is "$code" 8
+expect "the release suite runs all the same" has "$(tail -n 1 <<<"$log")" "build/test"
+
+finish
