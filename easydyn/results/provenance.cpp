@@ -40,7 +40,10 @@ std::string current_time_utc() {
 std::string join_command_line(int argc, const char* const* argv) {
   std::string line;
   for (int i = 0; i < argc; ++i) {
-    line += (i == 0 ? "" : " ") + quote_for_shell(argv[i]);
+    if (i > 0) {
+      line += ' ';
+    }
+    line += quote_for_shell(argv[i]);
   }
   return line;
 }

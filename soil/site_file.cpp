@@ -1,0 +1,184 @@
+#include "soil/site_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string_view>
+
+#include "easydyn/error.hpp"
+#include "soil/toml_table.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+// Above 0.49 displacement elements lock and the compression wave dictates the time step.
+constexpr double highest_poisson_ratio = 0.49;
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path, ignored)) {
+    throw InputError(fmt::format("{}: cannot be read: no such file, or no permission", path.string()));
+  }
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+toml::table parse(const std::string& text, const std::filesystem::path& path) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}:{}: {}", path.string(), error.source().begin.line,
+                                 error.source().begin.column, error.description()));
+  }
+}
+
+// cp / cs = sqrt((2 - 2 nu) / (1 - 2 nu))
+double compute_speed_ratio(double nu) {
+  return std::sqrt((2 - 2 * nu) / (1 - 2 * nu));
+}
+
+// The two wave speeds from cs with cp or nu, or from E with nu.
+void read_stiffness(const TomlTable& table, Layer& layer) {
+  constexpr Range poisson_range{.low = 0, .high = highest_poisson_ratio};
+  if (table.has("E") == table.has("cs")) {
+    table.fail(table.has("E") ? "both E and cs are given, must be one of them"
+                              : "no stiffness: give cs with cp or nu, or E with nu");
+  }
+  if (table.has("E")) {
+    if (table.has("cp")) {
+      table.fail("cp", "both E and cp are given, must be E with nu");
+    }
+    const double E = table.number("E", "Pa", positive);
+    const double nu = table.number("nu", "", poisson_range);
+    layer.cs = std::sqrt(E / (2 * (1 + nu) * layer.density));
+    layer.cp = layer.cs * compute_speed_ratio(nu);
+    return;
+  }
+  layer.cs = table.number("cs", "m/s", positive);
+  if (table.has("cp") == table.has("nu")) {
+    table.fail(table.has("cp") ? "both cp and nu are given, must be one of them"
+                               : "no compression wave speed: give cp or nu beside cs");
+  }
+  if (table.has("nu")) {
+    layer.cp = layer.cs * compute_speed_ratio(table.number("nu", "", poisson_range));
+    return;
+  }
+  layer.cp = table.number("cp", "m/s", positive);
+  const double lowest = layer.cs * compute_speed_ratio(0);
+  const double highest = layer.cs * compute_speed_ratio(highest_poisson_ratio);
+  constexpr double rounding = 1e-6;
+  if (!(layer.cp >= lowest * (1 - rounding) && layer.cp <= highest * (1 + rounding))) {
+    table.fail(
+        "cp",
+        fmt::format("cp = {} m/s, must be >= {:.6g} and <= {:.6g} (Poisson ratio 0 to {} with cs = {} m/s)",
+                    layer.cp, lowest, highest, highest_poisson_ratio, layer.cs));
+  }
+}
+
+Layer read_layer(TomlTable& table, bool is_half_space) {
+  table.refuse_other_keys({"name", "thickness", "density", "cs", "cp", "nu", "E", "damping", "source"});
+  Layer layer;
+  layer.name = table.text("name", "");
+  if (!layer.name.empty()) {
+    table.set_object(fmt::format("layer \"{}\"", layer.name));
+  }
+  if (!is_half_space) {
+    if (!table.has("thickness")) {
+      table.fail("\"thickness\" is missing: only the last layer, the half-space, has none");
+    }
+    layer.thickness = table.number("thickness", "m", positive);
+  } else {
+    if (table.has("thickness")) {
+      table.fail("thickness", "the last layer is the half-space, must have no thickness");
+    }
+    layer.thickness = std::numeric_limits<double>::infinity();
+  }
+  layer.density = table.number("density", "kg/m3", positive);
+  read_stiffness(table, layer);
+  layer.damping = table.number("damping", "", {.low = 0, .high = 0.2, .includes_high = false});
+  layer.source = table.text("source", "");
+  return layer;
+}
+
+Receiver read_receiver(TomlTable& table) {
+  table.refuse_other_keys({"name", "position", "distance", "source"});
+  Receiver receiver;
+  receiver.name = table.text("name");
+  table.set_object(fmt::format("receiver \"{}\"", receiver.name));
+  table.text("source", "");
+  if (table.has("position") == table.has("distance")) {
+    table.fail(table.has("position") ? "both position and distance are given, must be one of them"
+                                     : "no place: give position = [x, y, z] or distance");
+  }
+  if (table.has("distance")) {
+    receiver.position = {0, table.number("distance", "m", any_number), 0};
+    return receiver;
+  }
+  const std::vector<double> position = table.numbers("position", "m");
+  if (position.size() != 2 && position.size() != 3) {
+    table.fail("position",
+               fmt::format("position has {} numbers, must have 2 (x, y) or 3 (x, y, z)", position.size()));
+  }
+  receiver.position = {position[0], position[1], position.size() == 3 ? position[2] : 0};
+  if (receiver.position[2] > 0) {
+    table.fail("position", fmt::format("z = {} m, must be <= 0 (0 is the surface)", receiver.position[2]));
+  }
+  return receiver;
+}
+
+void read_settings(const TomlTable& root, Site& site) {
+  const TomlTable solver = root.table("solver");
+  solver.refuse_other_keys({"highest_frequency", "damping_frequency", "points_per_wavelength", "margin"});
+  site.highest_frequency = solver.number("highest_frequency", "Hz", positive, site.highest_frequency);
+  site.damping_frequency = solver.number("damping_frequency", "Hz", positive, site.damping_frequency);
+  site.points_per_wavelength =
+      solver.number("points_per_wavelength", "", {.low = 4}, site.points_per_wavelength);
+  site.margin = solver.number("margin", "m", not_negative, site.margin);
+
+  const TomlTable loads = root.table("loads");
+  loads.refuse_other_keys({"taper_length", "duration", "decay_time"});
+  site.taper_length = loads.number("taper_length", "m", not_negative, site.taper_length);
+  site.duration = loads.number("duration", "s", not_negative, site.duration);
+  site.decay_time = loads.number("decay_time", "s", not_negative, site.decay_time);
+}
+
+}  // namespace
+
+Site read_site(const std::filesystem::path& path) {
+  Site site;
+  site.text = read_text_file(path);
+  const toml::table parsed = parse(site.text, path);
+  const TomlTable root(path, "", parsed);
+  root.refuse_other_keys({"name", "source", "layer", "receiver", "solver", "loads"});
+  site.name = root.text("name", path.stem().string());
+  root.text("source", "");
+
+  std::vector<TomlTable> layers = root.tables("layer");
+  if (layers.empty()) {
+    root.fail("no layer: give at least one [[layer]], the half-space");
+  }
+  for (TomlTable& table : layers) {
+    site.layers.push_back(read_layer(table, &table == &layers.back()));
+  }
+
+  std::vector<TomlTable> receivers = root.tables("receiver");
+  if (receivers.empty()) {
+    root.fail("no receiver: give at least one [[receiver]]");
+  }
+  std::set<std::string> names;
+  for (TomlTable& table : receivers) {
+    site.receivers.push_back(read_receiver(table));
+    if (!names.insert(site.receivers.back().name).second) {
+      table.fail("name", "the name appears twice");
+    }
+  }
+  read_settings(root, site);
+  return site;
+}
+
+}  // namespace easydyn::soil

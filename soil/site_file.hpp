@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+
+#include "soil/site.hpp"
+
+namespace easydyn::soil {
+
+/// Reads a site file (TOML): the layers of the ground, the receivers and the settings of the solver.
+///
+///     name = "Two layers"                     # optional: the name of the file
+///     source = "where the values come from"   # optional, here and in every layer and receiver
+///
+///     [[layer]]                               # from the surface downward
+///     name = "loam"                           # optional
+///     thickness = 2.0                         # [m]; the last layer has none: it is a half-space
+///     density = 1800                          # [kg/m3]
+///     damping = 0.03                          # ratio at solver.damping_frequency, >= 0 and < 0.2
+///     cs = 150                                # [m/s] shear wave speed, with cp [m/s] or nu; or E [Pa] with
+///     nu nu = 0.33                               # Poisson ratio, 0 to 0.49, also where it follows from cp
+///
+///     [[receiver]]
+///     name = "8 m"                            # a name of its own
+///     distance = 8                            # [m] from the track's axis: (0, 8, 0); or position = [x, y]
+///     or
+///                                             # [x, y, z] [m], z <= 0
+///     [solver]                                # optional, like each of its keys
+///     highest_frequency = 50                  # [Hz]
+///     damping_frequency = 20                  # [Hz]
+///     points_per_wavelength = 5.5             # >= 4
+///     margin = 3                              # [m]
+///
+///     [loads]                                 # optional, like each of its keys
+///     taper_length = 8                        # [m]
+///     duration = 0                            # [s]; 0: as long as the loads, plus decay_time
+///     decay_time = 0.5                        # [s]
+///
+/// @throws InputError `file:line:column: object: key = value, must be ...`; an unknown key is refused with
+/// the
+///         nearest known one
+Site read_site(const std::filesystem::path& path);
+
+}  // namespace easydyn::soil

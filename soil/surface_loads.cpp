@@ -1,0 +1,112 @@
+#include "soil/surface_loads.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "easydyn/error.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+// What is wrong with the loads, naming the dataset; empty if nothing is.
+std::string find_fault(const SurfaceLoads& loads) {
+  const Eigen::VectorXd& time = loads.time;
+  if (time.size() < 2) {
+    return fmt::format("\"/time\" has {} values, must have at least 2", time.size());
+  }
+  if (loads.footprints.empty()) {
+    return "\"/position\" has no footprint, must have at least 1";
+  }
+  if (loads.force.rows() != time.size() ||
+      loads.force.cols() != static_cast<Eigen::Index>(loads.footprints.size())) {
+    return fmt::format(
+        "\"/force\" has the shape ({} x {}), must be ({} x {}): one row per time, one column per footprint",
+        loads.force.rows(), loads.force.cols(), time.size(), loads.footprints.size());
+  }
+  // One step for all, up to the rounding of the times.
+  const double step = (time(time.size() - 1) - time(0)) / static_cast<double>(time.size() - 1);
+  if (!(step > 0)) {
+    return fmt::format("\"/time\" goes from {} s to {} s, must increase", time(0), time(time.size() - 1));
+  }
+  for (Eigen::Index i = 0; i < time.size(); ++i) {
+    if (!(std::abs(time(i) - time(0) - step * static_cast<double>(i)) < 1e-3 * step)) {
+      return fmt::format("\"/time\": value ({}) is {} s, must be {} s (uniform step)", i, time(i),
+                         time(0) + step * static_cast<double>(i));
+    }
+  }
+  for (std::size_t j = 0; j < loads.footprints.size(); ++j) {
+    const Footprint& footprint = loads.footprints[j];
+    if (!std::isfinite(footprint.x) || !std::isfinite(footprint.y)) {
+      return fmt::format("\"/position\": row {} is ({}, {}) m, must be finite", j, footprint.x, footprint.y);
+    }
+    if (!(footprint.length > 0) || !(footprint.width > 0) || !std::isfinite(footprint.length) ||
+        !std::isfinite(footprint.width)) {
+      return fmt::format("\"/size\": row {} is {} m x {} m, must be > 0", j, footprint.length,
+                         footprint.width);
+    }
+  }
+  for (Eigen::Index i = 0; i < loads.force.rows(); ++i) {
+    for (Eigen::Index j = 0; j < loads.force.cols(); ++j) {
+      if (!std::isfinite(loads.force(i, j))) {
+        return fmt::format("\"/force\": value ({}, {}) is {} N, must be finite", i, j, loads.force(i, j));
+      }
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+void write_surface_loads(const std::filesystem::path& path, const SurfaceLoads& loads,
+                         const results::Provenance& provenance) {
+  if (const std::string fault = find_fault(loads); !fault.empty()) {
+    throw ModelError("surface loads: " + fault);
+  }
+  const auto count = static_cast<Eigen::Index>(loads.footprints.size());
+  Eigen::MatrixXd position(count, 2), size(count, 2);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const Footprint& footprint = loads.footprints[static_cast<std::size_t>(j)];
+    position.row(j) << footprint.x, footprint.y;
+    size.row(j) << footprint.length, footprint.width;
+  }
+  results::ResultFile file(path, provenance);
+  file.write_vector("/time", loads.time, {.units = "s", .description = "time", .frame = "scalar"});
+  file.write_matrix("/force", loads.force,
+                    {.units = "N", .description = "force on each footprint", .frame = "positive downward"});
+  file.write_matrix("/position", position,
+                    {.units = "m",
+                     .description = "x, y of the centre of each footprint",
+                     .frame = "x along the track, y to the left"});
+  file.write_matrix("/size", size,
+                    {.units = "m",
+                     .description = "length along x and width along y of each footprint",
+                     .frame = "x along the track, y to the left"});
+  file.commit();
+}
+
+SurfaceLoads read_surface_loads(const std::filesystem::path& path) {
+  const results::ResultReader reader(path);
+  SurfaceLoads loads;
+  loads.time = reader.read_vector("/time");
+  loads.force = reader.read_matrix("/force");
+  const Eigen::MatrixXd position = reader.read_matrix("/position");
+  const Eigen::MatrixXd size = reader.read_matrix("/size");
+  if (position.cols() != 2) {
+    throw InputError(fmt::format("{}: \"/position\" has the shape ({} x {}), must have 2 columns: x, y",
+                                 path.string(), position.rows(), position.cols()));
+  }
+  if (size.cols() != 2 || size.rows() != position.rows()) {
+    throw InputError(fmt::format("{}: \"/size\" has the shape ({} x {}), must be ({} x 2): length, width",
+                                 path.string(), size.rows(), size.cols(), position.rows()));
+  }
+  for (Eigen::Index j = 0; j < position.rows(); ++j) {
+    loads.footprints.push_back({position(j, 0), position(j, 1), size(j, 0), size(j, 1)});
+  }
+  if (const std::string fault = find_fault(loads); !fault.empty()) {
+    throw InputError(fmt::format("{}: {}", path.string(), fault));
+  }
+  return loads;
+}
+
+}  // namespace easydyn::soil

@@ -1,0 +1,203 @@
+#include "soil/toml_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easydyn/error.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+std::string type_name(const toml::node& node) {
+  switch (node.type()) {
+    case toml::node_type::table:
+      return "a table";
+    case toml::node_type::array:
+      return node.is_array_of_tables() ? "an array of tables" : "an array";
+    case toml::node_type::string:
+      return "a string";
+    case toml::node_type::integer:
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    default:
+      return "a date or a time";
+  }
+}
+
+// Optimal string alignment distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+  for (std::size_t i = 0; i <= a.size(); ++i) {
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+      if (i == 0 || j == 0) {
+        d[i][j] = i + j;
+        continue;
+      }
+      d[i][j] =
+          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+      }
+    }
+  }
+  return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+bool Range::contains(double value) const {
+  return std::isfinite(value) && (includes_low ? value >= low : value > low) &&
+         (includes_high ? value <= high : value < high);
+}
+
+std::string Range::description() const {
+  std::vector<std::string> limits;
+  if (std::isfinite(low)) {
+    limits.push_back(fmt::format("{} {}", includes_low ? ">=" : ">", low));
+  }
+  if (std::isfinite(high)) {
+    limits.push_back(fmt::format("{} {}", includes_high ? "<=" : "<", high));
+  }
+  return limits.empty() ? "finite" : fmt::format("{}", fmt::join(limits, " and "));
+}
+
+std::string find_nearest(std::string_view word, const std::vector<std::string>& known) {
+  std::string nearest;
+  std::size_t fewest = word.size() / 2 + 2;  // more edits than that: no resemblance
+  for (const std::string& candidate : known) {
+    if (const std::size_t edits = edit_distance(word, candidate); edits < fewest) {
+      fewest = edits;
+      nearest = candidate;
+    }
+  }
+  return nearest;
+}
+
+void TomlTable::refuse_other_keys(const std::vector<std::string>& known) const {
+  for (const auto& [key, node] : table_.get()) {
+    if (std::find(known.begin(), known.end(), key.str()) == known.end()) {
+      const std::string nearest = find_nearest(key.str(), known);
+      fail_at(key.source(), fmt::format("unknown key \"{}\", {}", key.str(),
+                                        nearest.empty() ? fmt::format("known are {}", fmt::join(known, ", "))
+                                                        : fmt::format("did you mean \"{}\"?", nearest)));
+    }
+  }
+}
+
+bool TomlTable::has(std::string_view key) const {
+  return find(key) != nullptr;
+}
+
+double TomlTable::number(std::string_view key, const char* unit, const Range& range) const {
+  return check_number(key, get(key), unit, range);
+}
+
+double TomlTable::number(std::string_view key, const char* unit, const Range& range, double otherwise) const {
+  const toml::node* node = find(key);
+  return node ? check_number(key, *node, unit, range) : otherwise;
+}
+
+std::string TomlTable::text(std::string_view key) const {
+  std::string text = check_text(key, get(key));
+  if (text.empty()) {
+    fail(key, fmt::format("{} is empty", key));
+  }
+  return text;
+}
+
+std::string TomlTable::text(std::string_view key, std::string otherwise) const {
+  const toml::node* node = find(key);
+  return node ? check_text(key, *node) : std::move(otherwise);
+}
+
+std::vector<double> TomlTable::numbers(std::string_view key, const char* unit) const {
+  const toml::node& node = get(key);
+  const toml::array* array = node.as_array();
+  if (!array) {
+    fail_type(key, node, "an array of numbers");
+  }
+  std::vector<double> values;
+  for (const toml::node& element : *array) {
+    values.push_back(check_number(fmt::format("{}[{}]", key, values.size()), element, unit, any_number));
+  }
+  return values;
+}
+
+TomlTable TomlTable::table(std::string_view key) const {
+  static const toml::table nothing;
+  const toml::node* node = find(key);
+  if (node && !node->is_table()) {
+    fail_type(key, *node, "a table");
+  }
+  return {file_, fmt::format("[{}]", key), node ? *node->as_table() : nothing};
+}
+
+std::vector<TomlTable> TomlTable::tables(std::string_view key) const {
+  std::vector<TomlTable> tables;
+  if (const toml::node* node = find(key)) {
+    if (!node->is_array_of_tables()) {
+      fail(key, fmt::format("{} is {}, must be [[{}]]", key, type_name(*node), key));
+    }
+    for (const toml::node& element : *node->as_array()) {
+      tables.emplace_back(file_, fmt::format("{} {}", key, tables.size() + 1), *element.as_table());
+    }
+  }
+  return tables;
+}
+
+void TomlTable::fail(const std::string& what) const {
+  fail_at(table_.get().source(), what);
+}
+
+void TomlTable::fail(std::string_view key, const std::string& what) const {
+  const toml::node* node = table_.get().get(key);
+  fail_at(node ? node->source() : table_.get().source(), what);
+}
+
+const toml::node* TomlTable::find(std::string_view key) const {
+  return table_.get().get(key);
+}
+
+const toml::node& TomlTable::get(std::string_view key) const {
+  const toml::node* node = find(key);
+  if (!node) {
+    fail(fmt::format("\"{}\" is missing", key));
+  }
+  return *node;
+}
+
+double TomlTable::check_number(std::string_view key, const toml::node& node, const char* unit,
+                               const Range& range) const {
+  if (!node.is_number()) {
+    fail_type(key, node, "a number");
+  }
+  const double value = *node.value<double>();
+  if (!range.contains(value)) {
+    fail_at(node.source(),
+            fmt::format("{} = {}{}{}, must be {}", key, value, *unit ? " " : "", unit, range.description()));
+  }
+  return value;
+}
+
+std::string TomlTable::check_text(std::string_view key, const toml::node& node) const {
+  if (!node.is_string()) {
+    fail_type(key, node, "a string");
+  }
+  return *node.value<std::string>();
+}
+
+void TomlTable::fail_at(const toml::source_region& where, const std::string& what) const {
+  throw InputError(fmt::format("{}:{}:{}: {}{}{}", file_.string(), where.begin.line, where.begin.column,
+                               object_, object_.empty() ? "" : ": ", what));
+}
+
+void TomlTable::fail_type(std::string_view key, const toml::node& node, const char* expected) const {
+  fail_at(node.source(), fmt::format("{} is {}, must be {}", key, type_name(node), expected));
+}
+
+}  // namespace easydyn::soil

@@ -1,0 +1,243 @@
+#include "soil/site_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using easydyn::testing::message_of;
+using easydyn::testing::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+
+// A correct file; the tests replace one line of it.
+const std::string correct = R"(name = "Two layers"
+source = "invented"
+
+[[layer]]
+name = "loam"
+thickness = 2.0
+density = 1800
+damping = 0.03
+cs = 150
+nu = 0.33
+source = "borehole 3"
+
+[[layer]]
+density = 2000
+damping = 0.02
+cs = 300
+cp = 600
+
+[[receiver]]
+name = "8 m"
+distance = 8
+
+[[receiver]]
+name = "deep"
+position = [1, 2, -3]
+
+[solver]
+highest_frequency = 40
+margin = 4
+
+[loads]
+taper_length = 6
+)";
+
+std::string replaced(const std::string& from, const std::string& to) {
+  std::string text = correct;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+Site read(const std::string& text) {
+  const TemporaryFolder folder;
+  return read_site(folder.write("site.toml", text));
+}
+
+// The message without the folder: "site.toml:line:column: ..."
+std::string fault_of(const std::string& text) {
+  const std::string message = message_of<InputError>([&] { read(text); });
+  return message.substr(std::min(message.size(), message.find("site.toml")));
+}
+std::string fault_of(const std::string& from, const std::string& to) {
+  return fault_of(replaced(from, to));
+}
+
+TEST(SiteFile, BringsLayersReceiversAndSettings) {
+  const Site site = read(correct);
+  EXPECT_EQ(site.name, "Two layers");
+  EXPECT_EQ(site.text, correct);
+  ASSERT_EQ(site.layers.size(), 2u);
+  EXPECT_EQ(site.layers[0].name, "loam");
+  EXPECT_EQ(site.layers[0].thickness, 2);
+  EXPECT_EQ(site.layers[0].density, 1800);
+  EXPECT_EQ(site.layers[0].cs, 150);
+  EXPECT_NEAR(site.layers[0].poisson_ratio(), 0.33, 1e-12);
+  EXPECT_EQ(site.layers[0].damping, 0.03);
+  EXPECT_EQ(site.layers[0].source, "borehole 3");
+  EXPECT_TRUE(std::isinf(site.layers[1].thickness));
+  EXPECT_EQ(site.layers[1].cp, 600);
+  ASSERT_EQ(site.receivers.size(), 2u);
+  EXPECT_EQ(site.receivers[0].name, "8 m");
+  EXPECT_THAT(site.receivers[0].position, ElementsAre(0, 8, 0));
+  EXPECT_THAT(site.receivers[1].position, ElementsAre(1, 2, -3));
+  EXPECT_EQ(site.highest_frequency, 40);
+  EXPECT_EQ(site.margin, 4);
+  EXPECT_EQ(site.taper_length, 6);
+  EXPECT_EQ(site.points_per_wavelength, Site().points_per_wavelength);
+  EXPECT_EQ(site.decay_time, Site().decay_time);
+}
+
+TEST(SiteFile, TurnsYoungsModulusIntoWaveSpeeds) {
+  const Site site = read(replaced("cs = 150", "E = 61e6"));
+  const Layer& layer = site.layers[0];
+  // E = mu (3 lambda + 2 mu) / (lambda + mu)
+  const double mu = layer.shear_modulus(), lambda = layer.lame_lambda();
+  EXPECT_NEAR(mu * (3 * lambda + 2 * mu) / (lambda + mu), 61e6, 1);
+  EXPECT_NEAR(layer.poisson_ratio(), 0.33, 1e-12);
+}
+
+TEST(SiteFile, NeedsNoNameAndNoSettings) {
+  const Site site = read(
+      "[[layer]]\ndensity = 2000\ndamping = 0\ncs = 300\nnu = 0\n[[receiver]]\nname = \"a\"\ndistance = "
+      "-8\n");
+  EXPECT_EQ(site.name, "site");
+  EXPECT_NEAR(site.layers[0].cp, 300 * std::sqrt(2), 1e-9);
+  EXPECT_EQ(site.receivers[0].position[1], -8);
+  EXPECT_EQ(site.highest_frequency, Site().highest_frequency);
+}
+
+TEST(SiteFile, PlacesASurfaceReceiverByTwoCoordinates) {
+  EXPECT_THAT(read(replaced("[1, 2, -3]", "[1.5, 2]")).receivers[1].position, ElementsAre(1.5, 2, 0));
+}
+
+TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
+  EXPECT_EQ(fault_of("cs = 150", "cs = -150"), "site.toml:9:6: layer \"loam\": cs = -150 m/s, must be > 0");
+  EXPECT_EQ(fault_of("density = 2000", "density = -2e3"),
+            "site.toml:14:11: layer 2: density = -2000 kg/m3, must be > 0");
+  EXPECT_EQ(fault_of("cs = 150", "E = -61e6"),
+            "site.toml:9:5: layer \"loam\": E = -61000000 Pa, must be > 0");
+  EXPECT_EQ(fault_of("thickness = 2.0", "thickness = 0"),
+            "site.toml:6:13: layer \"loam\": thickness = 0 m, must be > 0");
+  EXPECT_EQ(fault_of("nu = 0.33", "nu = 0.5"),
+            "site.toml:10:6: layer \"loam\": nu = 0.5, must be >= 0 and <= 0.49");
+  EXPECT_EQ(fault_of("nu = 0.33", "nu = -0.1"),
+            "site.toml:10:6: layer \"loam\": nu = -0.1, must be >= 0 and <= 0.49");
+  EXPECT_EQ(fault_of("damping = 0.03", "damping = 0.2"),
+            "site.toml:8:11: layer \"loam\": damping = 0.2, must be >= 0 and < 0.2");
+  EXPECT_EQ(fault_of("highest_frequency = 40", "highest_frequency = 0"),
+            "site.toml:28:21: [solver]: highest_frequency = 0 Hz, must be > 0");
+  EXPECT_EQ(fault_of("margin = 4", "points_per_wavelength = 3"),
+            "site.toml:29:25: [solver]: points_per_wavelength = 3, must be >= 4");
+  EXPECT_EQ(fault_of("taper_length = 6", "taper_length = -6"),
+            "site.toml:32:16: [loads]: taper_length = -6 m, must be >= 0");
+}
+
+TEST(SiteFileFault, IsANumberThatIsNotFinite) {
+  EXPECT_EQ(fault_of("density = 1800", "density = nan"),
+            "site.toml:7:11: layer \"loam\": density = nan kg/m3, must be > 0");
+  EXPECT_EQ(fault_of("thickness = 2.0", "thickness = inf"),
+            "site.toml:6:13: layer \"loam\": thickness = inf m, must be > 0");
+  EXPECT_EQ(fault_of("distance = 8", "distance = nan"),
+            "site.toml:21:12: receiver \"8 m\": distance = nan m, must be finite");
+  EXPECT_EQ(fault_of("[1, 2, -3]", "[1, -inf, 0]"),
+            "site.toml:25:16: receiver \"deep\": position[1] = -inf m, must be finite");
+}
+
+TEST(SiteFileFault, IsAnUnknownKeyWithTheNearestKnownOne) {
+  EXPECT_EQ(fault_of("thickness = 2.0", "thicknes = 2.0"),
+            "site.toml:6:1: layer 1: unknown key \"thicknes\", did you mean \"thickness\"?");
+  EXPECT_EQ(fault_of("highest_frequency", "frequency_highest"),
+            "site.toml:28:1: [solver]: unknown key \"frequency_highest\", known are highest_frequency, "
+            "damping_frequency, points_per_wavelength, margin");
+  EXPECT_EQ(fault_of("[solver]", "[slover]"),
+            "site.toml:27:2: unknown key \"slover\", did you mean \"solver\"?");
+  EXPECT_EQ(fault_of("taper_length", "taper_lenght"),
+            "site.toml:32:1: [loads]: unknown key \"taper_lenght\", did you mean \"taper_length\"?");
+  EXPECT_EQ(fault_of("name = \"deep\"", "nmae = \"deep\""),
+            "site.toml:24:1: receiver 2: unknown key \"nmae\", did you mean \"name\"?");
+}
+
+TEST(SiteFileFault, IsAWrongType) {
+  EXPECT_EQ(fault_of("density = 1800", "density = \"1800\""),
+            "site.toml:7:11: layer \"loam\": density is a string, must be a number");
+  EXPECT_EQ(fault_of("name = \"loam\"", "name = 7"),
+            "site.toml:5:8: layer 1: name is a number, must be a string");
+  EXPECT_EQ(fault_of("position = [1, 2, -3]", "position = 3"),
+            "site.toml:25:12: receiver \"deep\": position is a number, must be an array of numbers");
+  EXPECT_EQ(fault_of("[1, 2, -3]", "[1, \"2\", -3]"),
+            "site.toml:25:16: receiver \"deep\": position[1] is a string, must be a number");
+  EXPECT_THAT(fault_of("layer = 3\n[[receiver]]\nname = \"a\"\ndistance = 1\n"),
+              EndsWith("layer is a number, must be [[layer]]"));
+  EXPECT_THAT(fault_of("[layer]\ncs = 3\n"), EndsWith("layer is a table, must be [[layer]]"));
+}
+
+TEST(SiteFileFault, IsAMissingOrContradictingStiffness) {
+  EXPECT_EQ(fault_of("cs = 150\n", "\n"),
+            "site.toml:4:1: layer \"loam\": no stiffness: give cs with cp or nu, or E with nu");
+  EXPECT_THAT(fault_of("cs = 150\n", "cs = 150\nE = 1e8\n"),
+              EndsWith("both E and cs are given, must be one of them"));
+  EXPECT_THAT(fault_of("cs = 150\n", "E = 1e8\ncp = 300\n"),
+              EndsWith("both E and cp are given, must be E with nu"));
+  EXPECT_THAT(fault_of("cs = 150\n", "cs = 150\ncp = 300\n"),
+              EndsWith("both cp and nu are given, must be one of them"));
+  EXPECT_THAT(fault_of("nu = 0.33\n", "\n"), EndsWith("no compression wave speed: give cp or nu beside cs"));
+  EXPECT_THAT(fault_of("cs = 150\nnu = 0.33\n", "E = 1e8\n"), EndsWith("layer \"loam\": \"nu\" is missing"));
+  EXPECT_THAT(fault_of("cp = 600", "cp = 400"),
+              AllOf(HasSubstr("site.toml:17:6: layer 2: cp = 400 m/s, must be >= 424.264 and <= 2142.43"),
+                    HasSubstr("cs = 300 m/s")));
+  EXPECT_THAT(fault_of("cp = 600", "cp = 4000"), HasSubstr("cp = 4000 m/s"));
+}
+
+TEST(SiteFileFault, IsAMissingPart) {
+  EXPECT_EQ(fault_of("thickness = 2.0\n", ""),
+            "site.toml:4:1: layer \"loam\": \"thickness\" is missing: only the last layer, the half-space, "
+            "has none");
+  EXPECT_THAT(fault_of("density = 2000", "thickness = 3\ndensity = 2000"),
+              EndsWith("layer 2: the last layer is the half-space, must have no thickness"));
+  EXPECT_THAT(fault_of("damping = 0.03\n", ""), EndsWith("layer \"loam\": \"damping\" is missing"));
+  EXPECT_THAT(fault_of("[[receiver]]\nname = \"a\"\ndistance = 1\n"), HasSubstr("no layer"));
+  EXPECT_THAT(fault_of("[[layer]]\ndensity = 2000\ndamping = 0\ncs = 300\nnu = 0\n"),
+              HasSubstr("no receiver"));
+  EXPECT_THAT(fault_of(""), HasSubstr("no layer"));
+}
+
+TEST(SiteFileFault, IsAReceiverOutOfPlace) {
+  EXPECT_EQ(fault_of("[1, 2, -3]", "[1, 2, 3]"),
+            "site.toml:25:12: receiver \"deep\": z = 3 m, must be <= 0 (0 is the surface)");
+  EXPECT_EQ(fault_of("name = \"deep\"", "name = \"8 m\""),
+            "site.toml:24:8: receiver \"8 m\": the name appears twice");
+  EXPECT_THAT(fault_of("name = \"deep\"\n", ""), EndsWith("receiver 2: \"name\" is missing"));
+  EXPECT_THAT(fault_of("name = \"deep\"", "name = \"\""), EndsWith("receiver 2: name is empty"));
+  EXPECT_THAT(fault_of("[1, 2, -3]", "[1]"),
+              EndsWith("position has 1 numbers, must have 2 (x, y) or 3 (x, y, z)"));
+  EXPECT_THAT(fault_of("distance = 8\n", ""), EndsWith("no place: give position = [x, y, z] or distance"));
+  EXPECT_THAT(fault_of("distance = 8\n", "distance = 8\nposition = [1, 2]\n"),
+              HasSubstr("both position and distance"));
+}
+
+TEST(SiteFileFault, IsTextThatIsNoToml) {
+  EXPECT_THAT(fault_of("cs = 150", "cs = = 150"), HasSubstr("site.toml:9:6: "));
+  EXPECT_THAT(fault_of("cs = 150", "density = 150"), HasSubstr("site.toml:9:"));  // the key a second time
+}
+
+TEST(SiteFileFault, IsAFileThatIsNotThere) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(message_of<InputError>([&] { read_site(folder / "none.toml"); }),
+              HasSubstr("none.toml: cannot be read"));
+  EXPECT_THROW(read_site(folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace easydyn::soil
