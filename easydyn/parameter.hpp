@@ -5,14 +5,15 @@
 
 namespace easydyn {
 
-/// A number that remembers where it comes from: converts to double, so that formulas read as usual, and forgets
-/// its source as soon as a plain number is assigned to it.
+/// A number that remembers where it comes from: converts to double, so that formulas read as usual, and
+/// forgets its source as soon as a plain number is assigned to it.
 ///
 ///   pads.stiffness = {180 * MN / m, "M-l: Brussels tram class"};   // bundled data
 ///   pads.stiffness = 200 * MN / m;                                  // source is now "set by the user"
 ///
 /// Marks used by the bundled data: F read in the source named, C computed from a closed form or a fit,
-/// D derived by elementary reasoning, M recalled from the literature and not verified (-h, -m, -l = confidence).
+/// D derived by elementary reasoning, M recalled from the literature and not verified (-h, -m, -l =
+/// confidence).
 struct Sourced {
   double value = 0;
   std::string source = "default";

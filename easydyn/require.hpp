@@ -17,7 +17,8 @@ inline void require(bool accepted, std::string_view object, std::string_view qua
                     std::string_view unit, std::string_view range) {
   if (!(accepted && std::isfinite(value))) {
     const std::string_view space = unit.empty() ? "" : " ";
-    throw ModelError(fmt::format("{}: {} = {:g}{}{}, must be {}", object, quantity, value, space, unit, range));
+    throw ModelError(
+        fmt::format("{}: {} = {:g}{}{}, must be {}", object, quantity, value, space, unit, range));
   }
 }
 

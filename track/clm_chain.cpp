@@ -19,9 +19,10 @@ ChainCompliance compute_infinite_chain(const ChainStiffness& stiffness) {
   if (std::abs(1.0 + s + root) < std::abs(1.0 + s - root)) root = -root;
   const std::complex<double> larger = 1.0 + s + root;
   if (!(std::abs(larger) > 1 + 1e-14))
-    throw ModelError(fmt::format("CLM chain: |L| = {:.15g}, must be < 1: without damping the chain carries waves "
-                                 "away without decay and has no steady response",
-                                 1 / std::abs(larger)));
+    throw ModelError(
+        fmt::format("CLM chain: |L| = {:.15g}, must be < 1: without damping the chain carries waves "
+                    "away without decay and has no steady response",
+                    1 / std::abs(larger)));
   // K_c (1/L - L) = 2 K_c root
   return {0.5 / (K_c * root), 1.0 / larger};
 }

@@ -8,7 +8,8 @@
 namespace easydyn::track {
 
 /// Dynamic stiffnesses of a chain of foundations at one angular frequency w:
-///   K_f = k_f + i w d_f - w^2 m_f   (foundation to ground),   K_c = k_c + i w d_c   (to each neighbour)  [N/m]
+///   K_f = k_f + i w d_f - w^2 m_f   (foundation to ground),   K_c = k_c + i w d_c   (to each neighbour)
+///   [N/m]
 struct ChainStiffness {
   std::complex<double> K_f;
   std::complex<double> K_c;
@@ -24,8 +25,8 @@ struct ChainCompliance {
 
 ChainStiffness chain_stiffness(const Clm& clm, double omega);
 
-/// L + 1/L = 2 + K_f / K_c, root of modulus < 1 (the principal square root takes the wrong branch above some tens
-/// of Hz); H_00 = L / (K_c (1 - L^2)); K_c = 0: H_00 = 1 / K_f, L = 0.
+/// L + 1/L = 2 + K_f / K_c, root of modulus < 1 (the principal square root takes the wrong branch above some
+/// tens of Hz); H_00 = L / (K_c (1 - L^2)); K_c = 0: H_00 = 1 / K_f, L = 0.
 /// @throws ModelError if both roots have modulus 1 (an undamped chain in its pass band: no steady response)
 ChainCompliance compute_infinite_chain(const ChainStiffness& stiffness);
 

@@ -22,14 +22,22 @@ std::string_view kind_of(const Foundation& foundation) {
   return kinds[foundation.index()];
 }
 
-bool is_rigid(const Foundation& foundation) { return std::holds_alternative<RigidGround>(foundation); }
+bool is_rigid(const Foundation& foundation) {
+  return std::holds_alternative<RigidGround>(foundation);
+}
 
 Clm as_clm(const Foundation& foundation) {
   const Sourced none(0, "none in this foundation");
   return std::visit(Overloaded{
-                        [&](const RigidGround&) { return Clm{none, none, none, none, none}; },
-                        [&](const Winkler& f) { return Clm{none, f.k_f, f.d_f, none, none}; },
-                        [&](const WinklerMass& f) { return Clm{f.m_f, f.k_f, f.d_f, none, none}; },
+                        [&](const RigidGround&) {
+                          return Clm{none, none, none, none, none};
+                        },
+                        [&](const Winkler& f) {
+                          return Clm{none, f.k_f, f.d_f, none, none};
+                        },
+                        [&](const WinklerMass& f) {
+                          return Clm{f.m_f, f.k_f, f.d_f, none, none};
+                        },
                         [](const Clm& f) { return f; },
                     },
                     foundation);
@@ -44,10 +52,12 @@ void validate(const Clm& clm, std::string_view object) {
   require_finite(object, "d_c", clm.d_c, "N s/m");
   // neighbours in opposition, the worst wavenumber: theta = pi
   const double k = clm.k_f + 4 * clm.k_c, d = clm.d_f + 4 * clm.d_c;
-  require(k >= 0, object, fmt::format("not passive: k_f + 4 k_c = {:g} + 4 x {:g}", clm.k_f.value, clm.k_c.value),
-          k, "N/m", ">= 0");
-  require(d >= 0, object, fmt::format("not passive: d_f + 4 d_c = {:g} + 4 x {:g}", clm.d_f.value, clm.d_c.value),
-          d, "N s/m", ">= 0");
+  require(k >= 0, object,
+          fmt::format("not passive: k_f + 4 k_c = {:g} + 4 x {:g}", clm.k_f.value, clm.k_c.value), k, "N/m",
+          ">= 0");
+  require(d >= 0, object,
+          fmt::format("not passive: d_f + 4 d_c = {:g} + 4 x {:g}", clm.d_f.value, clm.d_c.value), d, "N s/m",
+          ">= 0");
 }
 
 void validate(const Foundation& foundation, std::string_view object) {

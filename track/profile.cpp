@@ -15,7 +15,8 @@ StepProfile::StepProfile(double x0, double height) : x0_(x0), height_(height) {
 double StepProfile::ramp_length(double wheel_radius) const {
   const double h = std::abs(height_);
   if (!(wheel_radius > h))
-    require(false, "step in the rail", "wheel radius", wheel_radius, "m", fmt::format("> |height| = {:g} m", h));
+    require(false, "step in the rail", "wheel radius", wheel_radius, "m",
+            fmt::format("> |height| = {:g} m", h));
   return std::sqrt(h * (2 * wheel_radius - h));
 }
 

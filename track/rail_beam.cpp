@@ -13,9 +13,9 @@ BeamElement::BeamElement(double EI, double rhoA, double length) : EI_(EI), rhoA_
 Eigen::Matrix4d BeamElement::compute_stiffness() const {
   const double l = length_;
   Eigen::Matrix4d K;
-  K << 12, 6 * l, -12, 6 * l,                   //
-      6 * l, 4 * l * l, -6 * l, 2 * l * l,      //
-      -12, -6 * l, 12, -6 * l,                  //
+  K << 12, 6 * l, -12, 6 * l,               //
+      6 * l, 4 * l * l, -6 * l, 2 * l * l,  //
+      -12, -6 * l, 12, -6 * l,              //
       6 * l, 2 * l * l, -6 * l, 4 * l * l;
   return EI_ / (l * l * l) * K;
 }
@@ -23,9 +23,9 @@ Eigen::Matrix4d BeamElement::compute_stiffness() const {
 Eigen::Matrix4d BeamElement::compute_mass() const {
   const double l = length_;
   Eigen::Matrix4d M;
-  M << 156, 22 * l, 54, -13 * l,                    //
-      22 * l, 4 * l * l, 13 * l, -3 * l * l,        //
-      54, 13 * l, 156, -22 * l,                     //
+  M << 156, 22 * l, 54, -13 * l,              //
+      22 * l, 4 * l * l, 13 * l, -3 * l * l,  //
+      54, 13 * l, 156, -22 * l,               //
       -13 * l, -3 * l * l, -22 * l, 4 * l * l;
   return rhoA_ * l / 420 * M;
 }

@@ -15,16 +15,16 @@ struct BeamShape {
 ///
 ///   E I w'''' + rho A w.. = p(x, t)       w(x) = N(x) q,  q = (w_1, w_1', w_2, w_2')
 ///
-/// w is the deflection, positive **downward** [m], w' = dw/dx its slope [rad], x forward. N are the cubic Hermite
-/// polynomials: w and w' are continuous along the rail, w'' jumps at the nodes by the discretisation error.
-/// Valid below about 1 kHz for a rail (no shear, no rotary inertia).
+/// w is the deflection, positive **downward** [m], w' = dw/dx its slope [rad], x forward. N are the cubic
+/// Hermite polynomials: w and w' are continuous along the rail, w'' jumps at the nodes by the discretisation
+/// error. Valid below about 1 kHz for a rail (no shear, no rotary inertia).
 ///
 /// At a contact that moves with x_c(t) the deflection, its rate and its acceleration are
 ///   w = N q,   dw/dt = N qd + v dN q,   d2w/dt2 = N qdd + 2 v dN qd + v^2 ddN q + a dN q
 /// with v = dx_c/dt, a = dv/dt: the convective terms.
 ///
-/// Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis, McGraw-Hill, 1968, sections 5.6 and 11.4
-/// (without shear).
+/// Reference: J. S. Przemieniecki, Theory of Matrix Structural Analysis, McGraw-Hill, 1968, sections 5.6
+/// and 11.4 (without shear).
 class BeamElement {
  public:
   /// @param EI      bending stiffness [N m2], > 0

@@ -43,7 +43,9 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::span<const RailSection> rail_sections() { return sections; }
+std::span<const RailSection> rail_sections() {
+  return sections;
+}
 
 const RailSection& rail_section(std::string_view name) {
   const auto found = std::ranges::find(sections, name, &RailSection::name);

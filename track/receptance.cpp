@@ -11,7 +11,8 @@ namespace easydyn::track {
 
 Eigen::VectorXd compute_static_response(const TrackModel& track, const Eigen::VectorXd& load) {
   // the numbering by bay is already that of a narrow band
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> K(track.K());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>> K(
+      track.K());
   if (K.info() != Eigen::Success)
     throw SolverError(track.data().label() + ": static stiffness is singular; check supports and foundation");
   return K.solve(load);
@@ -34,9 +35,10 @@ Eigen::MatrixXcd compute_harmonic_response(const TrackModel& track, const Eigen:
     if (i == 0) lu.analyzePattern(dynamic);
     lu.factorize(dynamic);
     if (lu.info() != Eigen::Success)
-      throw SolverError(fmt::format("{}: dynamic stiffness is singular at {:g} Hz; add damping or avoid the "
-                                    "resonance",
-                                    track.data().label(), frequency));
+      throw SolverError(
+          fmt::format("{}: dynamic stiffness is singular at {:g} Hz; add damping or avoid the "
+                      "resonance",
+                      track.data().label(), frequency));
     response.col(i) = lu.solve(f);
   }
   return response;

@@ -105,7 +105,8 @@ int TrackModel::foundation_dof(int j) const {
 
 RailPoint TrackModel::rail_point(double x) const {
   if (!(begin() <= x && x <= end()))
-    require(false, data_.label(), "x on the rail", x, "m", fmt::format("between {:g} and {:g}", begin(), end()));
+    require(false, data_.label(), "x on the rail", x, "m",
+            fmt::format("between {:g} and {:g}", begin(), end()));
   const double length = data_.sleeper_spacing / data_.elements_per_bay;
   const double elements = (x - begin_) / length;
   const int node = std::min(static_cast<int>(elements), nodes() - 2);

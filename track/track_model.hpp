@@ -14,9 +14,14 @@ struct RailPoint {
   std::array<int, 4> dof;
   BeamShape shape;
 
-  template <class Vector>
-  Eigen::Vector4d gather(const Vector& q) const {
-    return {q[dof[0]], q[dof[1]], q[dof[2]], q[dof[3]]};
+  double deflection(const Eigen::Ref<const Eigen::VectorXd>& q) const { return dot(shape.N, q); }  ///< w [m]
+  double slope(const Eigen::Ref<const Eigen::VectorXd>& q) const { return dot(shape.dN, q); }      ///< w' [1]
+  double curvature(const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    return dot(shape.ddN, q);
+  }  ///< w'' [1/m]
+
+  double dot(const Eigen::RowVector4d& row, const Eigen::Ref<const Eigen::VectorXd>& q) const {
+    return row[0] * q[dof[0]] + row[1] * q[dof[1]] + row[2] * q[dof[2]] + row[3] * q[dof[3]];
   }
 };
 
@@ -48,14 +53,14 @@ class TrackModel {
   int bays() const { return bays_; }
   int sleepers() const { return bays_ + 1; }
   int nodes() const { return bays_ * data_.elements_per_bay + 1; }  ///< of the rail
-  double begin() const { return begin_; }                            ///< x of the first sleeper [m]
+  double begin() const { return begin_; }                           ///< x of the first sleeper [m]
   double end() const { return begin_ + bays_ * data_.sleeper_spacing; }
   double node_x(int node) const { return begin_ + node * data_.sleeper_spacing / data_.elements_per_bay; }
   double sleeper_x(int j) const { return begin_ + j * data_.sleeper_spacing; }
 
-  int rail_dof(int node) const;        ///< of the deflection; the slope follows it
+  int rail_dof(int node) const;  ///< of the deflection; the slope follows it
   int sleeper_dof(int j) const;
-  int foundation_dof(int j) const;     ///< -1 on rigid ground
+  int foundation_dof(int j) const;  ///< -1 on rigid ground
 
   /// The rail at position x. @throws ModelError if x is off the rail
   RailPoint rail_point(double x) const;
@@ -72,7 +77,7 @@ class TrackModel {
   TrackData data_;
   int bays_;
   double begin_;
-  int rigid_;         ///< 1 on rigid ground, else 0: unknowns less per bay
+  int rigid_;  ///< 1 on rigid ground, else 0: unknowns less per bay
   int dofs_per_bay_;
   int half_bandwidth_ = 0;
   Eigen::SparseMatrix<double> M_, C_, K_;

@@ -1,0 +1,95 @@
+#include "track/rail_beam.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "tests/reference/winkler_beam.hpp"
+#include "track/rail_section.hpp"
+
+namespace {
+
+using namespace easydyn::track;
+
+TEST(BeamElement, HasTwoRigidBodyMotionsAndAPositiveMass) {
+  const BeamElement element(6.38e6, 60.21, 0.15);
+  const Eigen::Matrix4d K = element.compute_stiffness(), M = element.compute_mass();
+  EXPECT_EQ(K, K.transpose());
+  EXPECT_EQ(M, M.transpose());
+  const Eigen::Vector4d heave(1, 0, 1, 0), pitch(0, 1, 0.15, 1);
+  EXPECT_NEAR((K * heave).norm() / K.norm(), 0, 1e-15);
+  EXPECT_NEAR((K * pitch).norm() / K.norm(), 0, 1e-15);
+  EXPECT_NEAR(heave.dot(M * heave), 60.21 * 0.15, 1e-12);                   // mass
+  EXPECT_NEAR(pitch.dot(M * pitch), 60.21 * std::pow(0.15, 3) / 3, 1e-12);  // inertia about node 1
+  EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(M).eigenvalues().minCoeff(), 0);
+}
+
+TEST(BeamShape, ReproducesCubicsAndTheirDerivatives) {
+  const double l = 0.7;
+  const auto w = [](double x) { return 1 + 2 * x - 3 * x * x + 4 * x * x * x; };
+  const auto dw = [](double x) { return 2 - 6 * x + 12 * x * x; };
+  const Eigen::Vector4d q(w(0), dw(0), w(l), dw(l));
+  for (const double xi : {0.0, 0.3, 0.8, 1.0}) {
+    const BeamShape s = compute_beam_shape(xi, l);
+    const double x = xi * l;
+    EXPECT_NEAR(s.N.dot(q), w(x), 1e-14);
+    EXPECT_NEAR(s.dN.dot(q), dw(x), 1e-13);
+    EXPECT_NEAR(s.ddN.dot(q), -6 + 24 * x, 1e-12);
+  }
+}
+
+/// First natural frequency of a beam pinned at both ends, n elements.
+double pinned_frequency(double EI, double m, double L, int n) {
+  const BeamElement element(EI, m, L / n);
+  const int size = 2 * n + 2;
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(size, size), M = K;
+  for (int e = 0; e < n; ++e) {
+    K.block<4, 4>(2 * e, 2 * e) += element.compute_stiffness();
+    M.block<4, 4>(2 * e, 2 * e) += element.compute_mass();
+  }
+  // without the two end deflections: unknowns 0 and size - 2
+  std::vector<int> free;
+  for (int i = 1; i < size; ++i)
+    if (i != size - 2) free.push_back(i);
+  const Eigen::MatrixXd K_ff = K(free, free), M_ff = M(free, free);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> modes(K_ff, M_ff, Eigen::EigenvaluesOnly);
+  return std::sqrt(modes.eigenvalues()[0]) / (2 * std::acos(-1.0));
+}
+
+TEST(BeamElement, FindsThePinnedPinnedFrequencyOf1420Hz) {
+  const RailSection& rail = rail_section("60E1");
+  const double exact =
+      easydyn::reference::pinned_pinned_frequency(rail.bending_stiffness(), rail.mass_per_length, 0.6);
+  EXPECT_NEAR(exact, 1420, 2);  // quoted to three digits
+  // error of the first mode with n cubic elements: (pi / n)^4 / 1440
+  EXPECT_NEAR(pinned_frequency(rail.bending_stiffness(), rail.mass_per_length, 0.6, 4) / exact, 1, 3e-4);
+  EXPECT_NEAR(pinned_frequency(rail.bending_stiffness(), rail.mass_per_length, 0.6, 16) / exact, 1, 2e-6);
+}
+
+TEST(BeamElement, RefusesImpossibleValues) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_THAT([] { BeamElement(-6.4e6, 60, 0.1); },
+              ThrowsMessage<easydyn::ModelError>(HasSubstr("EI = -6.4e+06 N m2, must be > 0")));
+  EXPECT_THROW(BeamElement(6.4e6, std::nan(""), 0.1), easydyn::ModelError);
+  EXPECT_THROW(BeamElement(6.4e6, 60, 0), easydyn::ModelError);
+}
+
+TEST(RailSection, IsFoundByNameAndNamesTheNearestOtherwise) {
+  using testing::HasSubstr;
+  using testing::ThrowsMessage;
+  EXPECT_NEAR(rail_section("60E1").bending_stiffness(), 6.38e6, 0.001e6);
+  EXPECT_EQ(rail_section("UIC60").inertia, rail_section("60E1").inertia);
+  EXPECT_THAT([] { rail_section("50E1"); },
+              ThrowsMessage<easydyn::ModelError>(HasSubstr("\"50E1\" is unknown, the nearest is")));
+  EXPECT_THAT([] { rail_section("CN6O"); },
+              ThrowsMessage<easydyn::ModelError>(HasSubstr("nearest is \"CN60\"")));
+  // a steel section weighs 7850 kg/m3 within 1 %
+  for (const RailSection& rail : rail_sections())
+    EXPECT_NEAR(rail.mass_per_length / rail.area / 7850, 1, 0.01) << rail.name;
+}
+
+}  // namespace
