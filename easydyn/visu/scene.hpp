@@ -22,7 +22,7 @@ struct Pose {
 struct MovingFrame {
   std::string name;  ///< unique in the scene
   std::vector<Pose> poses;
-  std::optional<Pose> rest;
+  std::optional<Pose> rest = {};
 };
 
 enum class Shape { box, cylinder, wheel, sphere };
@@ -60,11 +60,12 @@ struct Link {
 /// Shown at z = height + Scene::exaggeration * deflection.
 struct DeformingLine {
   std::string name;
-  Eigen::VectorXd x;                     ///< n positions, ascending [m]
-  Eigen::MatrixXd deflection;            ///< times x n, **upward** [m]
-  double y = 0, height = 0;              ///< of the undeformed line [m]
-  double width = 0.06;                   ///< of the line [m]
-  std::optional<Eigen::Vector3d> block;  ///< if given: a box of this size at each point instead of a line
+  Eigen::VectorXd x;           ///< n positions, ascending [m]
+  Eigen::MatrixXd deflection;  ///< times x n, **upward** [m]
+  double y = 0, height = 0;    ///< of the undeformed line [m]
+  double width = 0.06;         ///< of the line [m]
+  std::optional<Eigen::Vector3d> block =
+      {};  ///< if given: a box of this size at each point instead of a line
   std::string colour = "#333333";
 };
 
@@ -87,7 +88,7 @@ struct Scene {
   std::vector<DeformingLine> lines;
   double exaggeration =
       1;  ///< of small motions (MovingFrame::rest, DeformingLine); stated beside the picture
-  std::optional<double> ground;  ///< height of a grid that stands for the ground [m]
+  std::optional<double> ground = {};  ///< height of a grid that stands for the ground [m]
   Camera camera;
 };
 
