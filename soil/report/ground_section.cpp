@@ -1,0 +1,207 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "soil/report/sections.hpp"
+#include "soil/report/text.hpp"
+
+namespace easydyn::soil::report {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using results::ResultReader;
+
+constexpr Index most_curves = 6;
+
+struct Receivers {
+  MatrixXd position;  ///< n x 3 [m]
+  std::vector<std::string> names;
+  VectorXd distance;        ///< from the axis of the track [m]
+  std::vector<Index> near;  ///< indices, nearest first
+
+  Index count() const { return position.rows(); }
+  std::string label(Index i) const { return name_of(names, i, "receiver"); }
+};
+
+Receivers read_receivers(const ResultReader& ground) {
+  Receivers r;
+  r.position = ground.read_matrix("/receivers/position");
+  r.names = ground.read_names("/receivers/names");
+  r.distance = r.position.col(1).cwiseAbs();
+  r.near.resize(size_t(r.count()));
+  std::iota(r.near.begin(), r.near.end(), Index(0));
+  std::stable_sort(r.near.begin(), r.near.end(),
+                   [&](Index a, Index b) { return r.distance(a) < r.distance(b); });
+  return r;
+}
+
+std::vector<Index> chosen(const Receivers& receivers) {
+  std::vector<Index> out;
+  for (const Index i : spread(receivers.count(), most_curves)) out.push_back(receivers.near[size_t(i)]);
+  return out;
+}
+
+std::string remark_on_choice(const Receivers& receivers, size_t shown) {
+  return Index(shown) < receivers.count() ? fmt::format(" {} of {} receivers.", shown, receivers.count())
+                                          : "";
+}
+
+void add_velocities(visu::Report& report, const ResultReader& ground, const Receivers& receivers) {
+  const VectorXd time = ground.read_vector("/time");
+  const MatrixXd x = 1e3 * ground.read_matrix("/velocity/x"), y = 1e3 * ground.read_matrix("/velocity/y"),
+                 z = 1e3 * ground.read_matrix("/velocity/z");
+  report.add_subsection("Ground velocity at the receivers");
+  std::vector<visu::Chart> charts;
+  const auto shown = chosen(receivers);
+  for (const Index i : shown)
+    charts.push_back(
+        {.title = fmt::format("Velocity at {}", receivers.label(i)),
+         .x = {"time", "s"},
+         .y = {"velocity", "mm/s"},
+         .series = {{"z, vertical", time, z.col(i)},
+                    {"x, along the track", time, x.col(i)},
+                    {"y, across", time, y.col(i)}},
+         .caption = fmt::format("At x = {} m, y = {} m, z = {} m; the scales differ between receivers.",
+                                number_text(receivers.position(i, 0)), number_text(receivers.position(i, 1)),
+                                number_text(receivers.position(i, 2))),
+         .height = 230});
+  report.add_charts(std::move(charts));
+  const std::string remark = remark_on_choice(receivers, shown.size());
+  if (!remark.empty()) report.add_paragraph("Shown are" + remark);
+}
+
+double level(double velocity) {
+  return velocity > 0 ? 20 * std::log10(velocity / level_reference)
+                      : std::numeric_limits<double>::quiet_NaN();
+}
+
+void add_spectra(visu::Report& report, const ResultReader& ground, const Receivers& receivers) {
+  const VectorXd centre = ground.read_vector("/third_octave/centre");
+  const MatrixXd rms = ground.read_matrix("/third_octave/rms");
+  report.add_subsection("One-third octave spectra");
+  visu::Chart chart{.title = "Vertical velocity in one-third octave bands",
+                    .x = {"one-third octave band centre", "Hz", visu::Scale::logarithmic},
+                    .y = {"velocity level", "dB re 5·10\u207b\u2078 m/s"},
+                    .series = {},
+                    .height = 340};
+  const auto shown = chosen(receivers);
+  for (const Index i : shown)
+    chart.series.push_back(
+        {receivers.label(i), centre, rms.row(i).transpose().unaryExpr(&level), visu::Stroke::steps});
+  chart.caption = fmt::format(
+      "Rms of v_z over the whole record in each band, as a level re 5·10\u207b\u2078 m/s. Bands above {} Hz "
+      "are not "
+      "computed and left out.{}",
+      number_text(ground.read_number_attribute("highest_frequency")),
+      remark_on_choice(receivers, shown.size()));
+  report.add_chart(std::move(chart));
+}
+
+/// Peak particle velocity against distance, with the 10 dB within which a prediction can be believed.
+void add_decay(visu::Report& report, const Receivers& receivers, const MatrixXd& ppv) {
+  std::vector<Index> far;  // receivers on the axis have no place on a logarithmic distance
+  for (const Index i : receivers.near)
+    if (receivers.distance(i) > 0 && ppv(i, 3) > 0) far.push_back(i);
+  if (far.size() < 2) return;
+  const MatrixXd values = 1e3 * ppv(far, Eigen::all);
+  const VectorXd distance = receivers.distance(far);
+  visu::Chart chart{.title = "Peak particle velocity against distance from the axis of the track",
+                    .x = {"distance", "m", visu::Scale::logarithmic},
+                    .y = {"PPV", "mm/s", visu::Scale::logarithmic},
+                    .series = {},
+                    .height = 340};
+  const std::vector<const char*> names = {"x, along the track", "y, across", "z, vertical", "resultant"};
+  for (const int c : {3, 2, 0, 1})
+    if ((values.col(c).array() > 0).any())
+      chart.series.push_back({names[size_t(c)], distance, values.col(c),
+                              c == 3 ? visu::Stroke::line_and_points : visu::Stroke::points});
+  const double factor = std::pow(10, 10.0 / 20);
+  chart.bands = {{"resultant ± 10 dB", distance, values.col(3) / factor, values.col(3) * factor}};
+  chart.caption =
+      "Both axes logarithmic: a power law is a straight line. The grey band is ± 10 dB around the resultant, "
+      "the "
+      "accuracy that may be claimed for absolute levels.";
+  report.add_subsection("Decay with distance").add_chart(std::move(chart));
+}
+
+void add_indicators(visu::Report& report, const ResultReader& ground, const Receivers& receivers,
+                    const MatrixXd& ppv) {
+  const VectorXd kb = ground.read_vector("/indicators/kb_f_max"), vdb = ground.read_vector("/indicators/vdb");
+  const VectorXd centre = ground.read_vector("/third_octave/centre");
+  const MatrixXd rms = ground.read_matrix("/third_octave/rms");
+  const std::string highest = number_text(ground.read_number_attribute("highest_frequency"));
+  report.add_subsection("Indicators");
+  visu::Table table{{"receiver", "distance [m]", "PPV x [mm/s]", "PPV y [mm/s]", "PPV z [mm/s]",
+                     "PPV resultant [mm/s]", "KB_Fmax", "VdB [dB re 1e-6 in/s]", "strongest band [Hz]"},
+                    {},
+                    fmt::format("Indicators of the ground vibration, band-limited to {} Hz", highest)};
+  for (const Index i : receivers.near) {
+    Index strongest = 0;
+    rms.row(i).unaryExpr([](double v) { return std::isnan(v) ? -1.0 : v; }).maxCoeff(&strongest);
+    table.rows.push_back({receivers.label(i), number_text(receivers.distance(i)),
+                          number_text(1e3 * ppv(i, 0)), number_text(1e3 * ppv(i, 1)),
+                          number_text(1e3 * ppv(i, 2)), number_text(1e3 * ppv(i, 3)), number_text(kb(i)),
+                          fmt::format("{:.1f}", vdb(i)), number_text(centre(strongest))});
+  }
+  report.add_table(std::move(table));
+  report.add_paragraph(fmt::format(
+      "All indicators are band-limited to {} Hz, the highest frequency that the soil model resolves: they "
+      "hold "
+      "what the model holds and are lower bounds of what a broad-band instrument would show. PPV: largest "
+      "magnitude of each velocity component and of the vector. KB_Fmax: DIN 45669-1, of the vertical "
+      "velocity, "
+      "dimensionless. VdB: largest 1 s rms of the vertical velocity as a level. Strongest band: one-third "
+      "octave "
+      "band with the highest rms of v_z.",
+      highest));
+  report.add_note(
+      "Assessment by DIN 4150-2 or a similar standard applies to rooms, not to the free field: coupling to a "
+      "building and its floors changes levels by several dB either way. Predictions of absolute levels are "
+      "no "
+      "better than about 10 dB (Hunt & Hussein): a 15 % change of the soil's wave speed moves them by up to "
+      "6 dB, "
+      "a 5 m shift of the receiver by more than 5 dB. Compare variants; confirm limits by measurement.");
+}
+
+}  // namespace
+
+void add_ground_section(visu::Report& report, const ResultReader& ground) {
+  const Receivers receivers = read_receivers(ground);
+  report.add_section("Step 2: ground vibration");
+  if (receivers.count() == 0) {
+    report.add_paragraph("No receivers were given.");
+    return;
+  }
+  const MatrixXd ppv = ground.read_matrix("/indicators/ppv");
+  add_velocities(report, ground, receivers);
+  add_spectra(report, ground, receivers);
+  add_decay(report, receivers, ppv);
+  add_indicators(report, ground, receivers, ppv);
+}
+
+std::vector<visu::KeyFigure> ground_key_figures(const ResultReader& ground) {
+  const Receivers receivers = read_receivers(ground);
+  if (receivers.count() == 0) return {};
+  const MatrixXd ppv = ground.read_matrix("/indicators/ppv");
+  const VectorXd kb = ground.read_vector("/indicators/kb_f_max");
+  const std::string band =
+      fmt::format("up to {} Hz", number_text(ground.read_number_attribute("highest_frequency")));
+  std::vector<visu::KeyFigure> figures;
+  const auto add = [&](Index i) {
+    figures.push_back({fmt::format("PPV at {}", receivers.label(i)), number_text(1e3 * ppv(i, 3)), "mm/s",
+                       "resultant, " + band});
+    figures.push_back(
+        {fmt::format("KB_Fmax at {}", receivers.label(i)), number_text(kb(i)), "", "vertical, " + band});
+  };
+  add(receivers.near.front());
+  if (receivers.count() > 1) add(receivers.near.back());
+  return figures;
+}
+
+}  // namespace easydyn::soil::report

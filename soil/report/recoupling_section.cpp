@@ -1,0 +1,104 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "soil/report/sections.hpp"
+#include "soil/report/text.hpp"
+
+namespace easydyn::soil::report {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using results::ResultReader;
+
+std::string percent(double ratio) {
+  return number_text(100 * ratio, 2);
+}
+
+}  // namespace
+
+std::optional<Comparison> compare_displacements(const ResultReader& track, const ResultReader& ground) {
+  for (const char* dataset : {"/foundation/displacement", "/sleeper/x"}) {
+    if (!track.has(dataset)) return {};
+  }
+  for (const char* dataset : {"/footprint/displacement", "/footprint/x", "/footprint/taper"}) {
+    if (!ground.has(dataset)) return {};
+  }
+  const VectorXd sleepers = track.read_vector("/sleeper/x"), footprints = ground.read_vector("/footprint/x");
+  const MatrixXd foundation = track.read_matrix("/foundation/displacement");
+  const MatrixXd soil = ground.read_matrix("/footprint/displacement");
+  const VectorXd taper = ground.read_vector("/footprint/taper");
+
+  // the footprint's sleeper is the one at the same x
+  std::vector<Index> of_track, of_soil;
+  for (Index f = 0; f < footprints.size(); ++f) {
+    Index nearest = 0;
+    const double gap = (sleepers.array() - footprints(f)).abs().minCoeff(&nearest);
+    if (gap < 0.01) {
+      of_track.push_back(nearest);
+      of_soil.push_back(f);
+    }
+  }
+  if (of_soil.empty())
+    throw InputError(fmt::format("{} and {}: no footprint lies under a sleeper", track.path().string(),
+                                 ground.path().string()));
+  Comparison c{track.read_vector("/time"),
+               ground.read_vector("/time"),
+               footprints(of_soil),
+               taper(of_soil),
+               foundation(Eigen::all, of_track),
+               soil(Eigen::all, of_soil),
+               {}};
+  c.error = compute_recoupling_error(c.soil_time, c.soil, c.track_time, c.foundation, c.taper,
+                                     ground.read_number_attribute("highest_frequency"));
+  return c;
+}
+
+visu::KeyFigure recoupling_key_figure(const Comparison& c) {
+  return {"Recoupling error, above 2 Hz", percent(c.error.dynamic.l2), "%",
+          "foundation of step 1 against soil of step 2"};
+}
+
+void add_recoupling_section(visu::Report& report, const Comparison& c) {
+  report.add_section("Where both steps meet: the recoupling error");
+  report.add_paragraph(
+      "Step 1 replaces the soil by a foundation under every sleeper. If that foundation were perfect, its "
+      "displacement u_f would be the displacement that its reactions cause in the soil of step 2. The "
+      "difference "
+      "is the accuracy of the foundation in this very run.");
+  report.add_table(
+      {{"part", "relative L2 [%]", "relative peak [%]"},
+       {{"whole signal", percent(c.error.total.l2), percent(c.error.total.peak)},
+        {"quasi-static, below 2 Hz", percent(c.error.quasi_static.l2), percent(c.error.quasi_static.peak)},
+        {"dynamic, above 2 Hz", percent(c.error.dynamic.l2), percent(c.error.dynamic.peak)}},
+       fmt::format("Recoupling error over {} sleepers under their full load, from t = {} s to {} s",
+                   c.error.footprints, number_text(c.error.from), number_text(c.error.to))});
+  report.add_paragraph(
+      "Relative to the displacement of the soil. The quasi-static part depends on how far away the soil "
+      "model "
+      "ends: a box of finite elements on a fixed boundary is stiffer than the ground.");
+
+  // sleepers at a quarter, the middle and three quarters of those under their full load
+  std::vector<Index> full;
+  for (Index j = 0; j < c.taper.size(); ++j)
+    if (c.taper(j) >= 1 - 1e-9) full.push_back(j);
+  std::vector<visu::Chart> charts;
+  for (const Index k : spread(Index(full.size()) + 2, 5)) {  // the two ends drop out
+    if (k == 0 || k == Index(full.size()) + 1 || charts.size() == 3) continue;
+    const Index j = full[size_t(k - 1)];
+    charts.push_back({.title = fmt::format("Under the sleeper at x = {} m", number_text(c.x(j))),
+                      .x = {"time", "s"},
+                      .y = {"downward displacement", "mm"},
+                      .series = {{"soil, mean over the footprint (step 2)", c.soil_time, 1e3 * c.soil.col(j)},
+                                 {"foundation u_f (step 1)", c.track_time, 1e3 * c.foundation.col(j),
+                                  visu::Stroke::dashed}},
+                      .height = 230});
+  }
+  report.add_charts(std::move(charts));
+}
+
+}  // namespace easydyn::soil::report

@@ -1,0 +1,40 @@
+#pragma once
+
+// Private to soil/report: the parts of the page.
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "easydyn/results/result_file.hpp"
+#include "easydyn/visu/report.hpp"
+#include "soil/recoupling.hpp"
+
+namespace easydyn::soil::report {
+
+/// Reference of velocity levels [m/s]: L_v = 20 log10(v_rms / reference).
+inline constexpr double level_reference = 5e-8;
+
+/// Step 1: contact forces, deflections, ballast reactions, vehicle accelerations, energies.
+void add_track_section(visu::Report& report, const results::ResultReader& track);
+
+/// Step 2: velocities, spectra, decay with distance, indicators.
+void add_ground_section(visu::Report& report, const results::ResultReader& ground);
+std::vector<visu::KeyFigure> ground_key_figures(const results::ResultReader& ground);
+
+/// Where both steps meet: displacement of the soil under each sleeper against the track's foundation.
+struct Comparison {
+  Eigen::VectorXd track_time, soil_time;  ///< [s]
+  Eigen::VectorXd x, taper;               ///< of the footprints that lie under a sleeper [m], [1]
+  Eigen::MatrixXd foundation, soil;       ///< downward displacement, one column per footprint [m]
+  RecouplingError error;
+};
+
+/// Nothing if the files do not hold both displacements (a track on rigid ground).
+/// @throws InputError if no footprint lies under a sleeper
+std::optional<Comparison> compare_displacements(const results::ResultReader& track,
+                                                const results::ResultReader& ground);
+void add_recoupling_section(visu::Report& report, const Comparison& comparison);
+visu::KeyFigure recoupling_key_figure(const Comparison& comparison);
+
+}  // namespace easydyn::soil::report

@@ -1,0 +1,20 @@
+#pragma once
+
+// Private to soil/report: numbers and choices as text.
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace easydyn::soil::report {
+
+/// A number with three significant digits (or more where its integer part has more); a dash for NaN.
+std::string number_text(double value, int digits = 3);
+
+/// `count` of the indices 0 ... n-1, evenly spread, first and last among them; all if there are no more.
+std::vector<Eigen::Index> spread(Eigen::Index n, Eigen::Index count);
+
+/// Name `i`, or "what i+1" where names are missing.
+std::string name_of(const std::vector<std::string>& names, Eigen::Index i, const std::string& what);
+
+}  // namespace easydyn::soil::report

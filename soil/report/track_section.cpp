@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "soil/report/sections.hpp"
+#include "soil/report/text.hpp"
+
+namespace easydyn::soil::report {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using results::ResultReader;
+
+constexpr Index most_curves = 6;  // that a reader can tell apart in one chart
+
+std::vector<std::string> names_at(const ResultReader& file, const std::string& dataset) {
+  return file.has(dataset) ? file.read_names(dataset) : std::vector<std::string>{};
+}
+
+void add_contact_forces(visu::Report& report, const ResultReader& track, const VectorXd& time) {
+  if (!track.has("/contact/force")) return;
+  const MatrixXd force = 1e-3 * track.read_matrix("/contact/force");
+  const auto names = names_at(track, "/contact/names");
+  report.add_subsection("Wheel/rail contact forces");
+
+  visu::Chart chart{.title = "Contact force of each wheelset, both rails together",
+                    .x = {"time", "s"},
+                    .y = {"contact force", "kN"},
+                    .series = {}};
+  for (const Index w : spread(force.cols(), most_curves))
+    chart.series.push_back({name_of(names, w, "wheelset"), time, force.col(w)});
+  if (force.cols() > most_curves) {
+    chart.bands = {{"all wheelsets", time, force.rowwise().minCoeff(), force.rowwise().maxCoeff()}};
+    chart.caption = fmt::format("{} of {} wheelsets; the grey band encloses all. Compression is positive.",
+                                chart.series.size(), force.cols());
+  } else {
+    chart.caption = "Compression is positive; 0 means that the wheel has left the rail.";
+  }
+  report.add_chart(std::move(chart));
+
+  visu::Table table{{"wheelset", "at the start [kN]", "smallest [kN]", "largest [kN]",
+                     "standard deviation [kN]", "largest / start"},
+                    {},
+                    "Contact forces"};
+  for (Index w = 0; w < force.cols(); ++w) {
+    const auto f = force.col(w);
+    const double deviation = std::sqrt((f.array() - f.mean()).square().mean());
+    table.rows.push_back({name_of(names, w, "wheelset"), number_text(f(0)), number_text(f.minCoeff()),
+                          number_text(f.maxCoeff()), number_text(deviation),
+                          number_text(f.maxCoeff() / f(0))});
+  }
+  report.add_table(std::move(table));
+}
+
+/// The sleeper that moves or bears most, of those in the middle half of the track.
+Index busiest(const MatrixXd& histories) {
+  const Index n = histories.cols(), skip = n / 4;
+  Index best = 0;
+  histories.middleCols(skip, n - 2 * skip).cwiseAbs().colwise().maxCoeff().maxCoeff(&best);
+  return skip + best;
+}
+
+void add_deflections(visu::Report& report, const ResultReader& track, const VectorXd& time,
+                     const VectorXd& sleepers) {
+  if (!track.has("/rail/deflection")) return;
+  const MatrixXd rail = 1e3 * track.read_matrix("/rail/deflection");
+  const Index at = busiest(rail);
+  report.add_subsection("Deflections of the track");
+
+  const std::vector<std::pair<const char*, const char*>> parts = {
+      {"/sleeper/displacement", "sleeper"}, {"/foundation/displacement", "foundation (u_f of the CLM)"}};
+  Index row = 0;
+  rail.col(at).maxCoeff(&row);
+  visu::Chart history{
+      .title = fmt::format("At the sleeper at x = {} m, during the passage", number_text(sleepers(at))),
+      .x = {"time", "s"},
+      .y = {"downward displacement", "mm"},
+      .series = {{"rail", time, rail.col(at)}},
+      .caption = "Of the sleepers in the middle half of the track, the one where the rail moves most."};
+  visu::Chart shape{.title = fmt::format("Along the track at t = {} s", number_text(time(row), 4)),
+                    .x = {"x", "m"},
+                    .y = {"downward displacement", "mm"},
+                    .series = {{"rail", sleepers, rail.row(row)}},
+                    .caption = "When the rail is lowest at that sleeper."};
+  for (const auto& [dataset, name] : parts) {
+    if (!track.has(dataset)) continue;
+    const MatrixXd values = 1e3 * track.read_matrix(dataset);
+    history.series.push_back({name, time, values.col(at)});
+    shape.series.push_back({name, sleepers, values.row(row)});
+  }
+  report.add_charts({std::move(history), std::move(shape)});
+}
+
+void add_ballast_reactions(visu::Report& report, const ResultReader& track, const VectorXd& time,
+                           const VectorXd& sleepers) {
+  if (!track.has("/ballast/reaction")) return;
+  const MatrixXd reaction = 1e-3 * track.read_matrix("/ballast/reaction");
+  report.add_subsection("Ballast reactions: the load on the ground");
+  report.add_paragraph(
+      "These forces act on the soil in step 2, one per sleeper, compression positive. They come from the "
+      "wheel "
+      "loads alone: the dead load of the track was in the ground before.");
+
+  const Index n = reaction.cols(), middle = busiest(reaction);
+  visu::Chart history{.title = "Ballast reaction of some sleepers",
+                      .x = {"time", "s"},
+                      .y = {"reaction", "kN"},
+                      .series = {}};
+  std::vector<Index> chosen = {std::max<Index>(0, middle - n / 5), middle, std::min(n - 1, middle + n / 5)};
+  chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
+  for (const Index s : chosen)
+    history.series.push_back({fmt::format("x = {} m", number_text(sleepers(s))), time, reaction.col(s)});
+  visu::Chart envelope{.title = "Largest and smallest reaction of every sleeper",
+                       .x = {"x", "m"},
+                       .y = {"reaction", "kN"},
+                       .series = {{"largest", sleepers, reaction.colwise().maxCoeff()},
+                                  {"smallest", sleepers, reaction.colwise().minCoeff()}},
+                       .caption =
+                           "Over the whole run. Differences along the track come from unevenness, defects "
+                           "and where the run begins and ends."};
+  report.add_charts({std::move(history), std::move(envelope)});
+}
+
+void add_vehicle(visu::Report& report, const ResultReader& track, const VectorXd& time) {
+  if (!track.has("/vehicle/acceleration")) return;
+  const MatrixXd acceleration = track.read_matrix("/vehicle/acceleration");
+  if (acceleration.cols() == 0) return;
+  const auto names = names_at(track, "/vehicle/bodies");
+  report.add_subsection("Vehicle");
+  visu::Chart chart{.title = "Vertical acceleration of the bodies",
+                    .x = {"time", "s"},
+                    .y = {"acceleration", "m/s²"},
+                    .series = {}};
+  const auto chosen = spread(acceleration.cols(), most_curves);
+  for (const Index b : chosen) chart.series.push_back({name_of(names, b, "body"), time, acceleration.col(b)});
+  if (Index(chosen.size()) < acceleration.cols())
+    chart.caption = fmt::format("{} of {} bodies.", chosen.size(), acceleration.cols());
+  report.add_chart(std::move(chart));
+}
+
+void add_energies(visu::Report& report, const ResultReader& track, const VectorXd& time) {
+  const std::vector<std::string> parts = {"kinetic", "potential", "dissipated", "supplied"};
+  for (const std::string& part : parts)
+    if (!track.has("/energy/" + part)) return;
+  report.add_subsection("Energy balance");
+  visu::Chart chart{.title = "Energies, as changes since the start",
+                    .x = {"time", "s"},
+                    .y = {"energy", "kJ"},
+                    .series = {}};
+  VectorXd imbalance = VectorXd::Zero(time.size());
+  double largest = 0;
+  for (const std::string& part : parts) {
+    const VectorXd energy = 1e-3 * track.read_vector("/energy/" + part);
+    const VectorXd change = energy.array() - energy(0);
+    imbalance += part == "supplied" ? VectorXd(-change) : change;
+    largest = std::max(largest, change.cwiseAbs().maxCoeff());
+    chart.series.push_back({part, time, change});
+  }
+  chart.series.push_back(
+      {"kinetic + potential + dissipated \u2212 supplied", time, imbalance, visu::Stroke::dashed, "#000000"});
+  chart.caption = fmt::format(
+      "The dashed sum is zero for an exact solution; here its largest value is {} kJ, {} % of the largest "
+      "change.",
+      number_text(imbalance.cwiseAbs().maxCoeff(), 2),
+      number_text(largest > 0 ? 100 * imbalance.cwiseAbs().maxCoeff() / largest : 0, 2));
+  report.add_chart(std::move(chart));
+}
+
+}  // namespace
+
+void add_track_section(visu::Report& report, const ResultReader& track) {
+  report.add_section("Step 1: vehicle and track");
+  const VectorXd time = track.read_vector("/time");
+  const VectorXd sleepers = track.has("/sleeper/x") ? track.read_vector("/sleeper/x") : VectorXd();
+  add_contact_forces(report, track, time);
+  if (sleepers.size() > 0) {
+    add_deflections(report, track, time, sleepers);
+    add_ballast_reactions(report, track, time, sleepers);
+  }
+  add_vehicle(report, track, time);
+  add_energies(report, track, time);
+}
+
+}  // namespace easydyn::soil::report
