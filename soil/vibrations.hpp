@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "easydyn/parameter.hpp"
+#include "easydyn/results/result_file.hpp"
+#include "soil/indicators.hpp"
+#include "soil/recoupling.hpp"
+#include "soil/site.hpp"
+
+namespace easydyn::soil {
+
+/// What a prediction says: nt times, nr receivers, nl loaded footprints.
+struct Vibrations {
+  Eigen::VectorXd time;                    ///< nt [s], uniform
+  std::vector<Receiver> receivers;         ///< nr
+  Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
+  std::vector<Indicators> indicators;      ///< nr
+  Eigen::VectorXd footprint_x;             ///< nl [m]
+  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, downward
+  Eigen::VectorXd footprint_taper;         ///< nl: factor on each load
+  double highest_frequency = 0;            ///< [Hz]; nothing above it is claimed
+  std::vector<Parameter> parameters;       ///< site, mesh, boundary, time step
+  std::string site_text;                   ///< the site file, as read
+};
+
+/// Fills `indicators` from the velocities.
+void update_indicators(Vibrations& vibrations);
+
+/// Writes `vibrations.h5` (docs/formats.md).
+/// @throws ModelError if sizes disagree or a value is not finite; InputError if the file cannot be written
+void write_vibrations(const std::filesystem::path& path, const Vibrations& vibrations,
+                      const results::Provenance& provenance);
+
+/// @throws InputError naming the file, the dataset and what is wrong
+Vibrations read_vibrations(const std::filesystem::path& path);
+
+/// Recoupling error of the track that loaded the ground: /foundation/displacement of its `results.h5`, at the
+/// sleepers whose x is that of a footprint (within 1 mm), against the footprint displacement.
+/// @throws InputError if a dataset is missing (a track on rigid ground has no foundation); ModelError if no
+///         footprint with its full load is a sleeper
+RecouplingError compute_recoupling_error(const Vibrations& vibrations,
+                                         const results::ResultReader& track_results);
+
+}  // namespace easydyn::soil
