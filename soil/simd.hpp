@@ -16,8 +16,8 @@ inline constexpr int simd_bytes = 32;
 inline constexpr int simd_bytes = 16;
 #endif
 
-/// As many numbers of type T as fit a vector register (vector extension of GCC and Clang), with + - * / between
-/// packs and with scalars.
+/// As many numbers of type T as fit a vector register (vector extension of GCC and Clang), with + - * /
+/// between packs and with scalars.
 template <class T>
 struct Pack {
   static constexpr int lanes = simd_bytes / static_cast<int>(sizeof(T));
@@ -45,10 +45,8 @@ struct CacheLineAllocator {
   CacheLineAllocator() = default;
   template <class U>
   CacheLineAllocator(const CacheLineAllocator<U>&) {}
-  T* allocate(std::size_t n) {
-    return static_cast<T*>(::operator new(n * sizeof(T), std::align_val_t{64}));
-  }
-  void deallocate(T* p, std::size_t) { ::operator delete(p, std::align_val_t{64}); }
+  T* allocate(std::size_t n) { return static_cast<T*>(::operator new (n * sizeof(T), std::align_val_t{64})); }
+  void deallocate(T* p, std::size_t) { ::operator delete (p, std::align_val_t{64}); }
   bool operator==(const CacheLineAllocator&) const { return true; }
 };
 template <class T>

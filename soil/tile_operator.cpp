@@ -39,11 +39,11 @@ EASYDYN_INLINE V dot(const T (&m)[n], const V (&in)[n]) {
 template <class T, int N>
 struct RowMatrices {
   static constexpr int n = N + 1;
-  T A[n][n];                            // gradient
-  T KYs[n][n], KYp[n][n], AY[n][n];     // mu K_y, (lambda + 2 mu) K_y, -(lambda + mu) A
-  T KZs[n][n], KZp[n][n];               // same along z
-  T H[n][n], HT[n][n];                  // -(lambda G_z - mu G_z^T) and minus its transpose
-  T J[n][n];                            // lambda G_z + mu G_z^T
+  T A[n][n];                         // gradient
+  T KYs[n][n], KYp[n][n], AY[n][n];  // mu K_y, (lambda + 2 mu) K_y, -(lambda + mu) A
+  T KZs[n][n], KZp[n][n];            // same along z
+  T H[n][n], HT[n][n];               // -(lambda G_z - mu G_z^T) and minus its transpose
+  T J[n][n];                         // lambda G_z + mu G_z^T
 
   RowMatrices(const Tile<T>& tile, const LineOperators<T, N>& line) {
     const T l = tile.lambda, m = tile.mu;
@@ -79,17 +79,15 @@ void add_end_terms(const Tile<T>& tile, const RowMatrices<T, N>& row, int i, int
     for (int j = 0; j < n; ++j) {
       const T gy = tile.gradient_end[j], mz = tile.mz[k], my = tile.my[j];
       V dy_uy = zero, dy_ux = zero, dz_uz = zero, dzt_ux = zero, dzt_uy = zero;
-      V y_end_gx = zero;
       for (int p = 0; p < n; ++p) {
         dy_uy += row.A[j][p] * w(1, k, p);
         dy_ux += row.A[j][p] * w(0, k, p);
         dz_uz += row.J[k][p] * w(2, p, j);
         dzt_ux += row.J[p][k] * w(0, p, j);
         dzt_uy += row.J[p][k] * w(1, p, j);
-        y_end_gx += row.A[j][p] * tile.gradient_end[p] * gx[nn + k * n + p];
       }
       f[k * n + j] += g * (mz * (l - m) * dy_uy + my * dz_uz + (l + m) * mz * gy * w(1, k, j)) -
-                      (l - m) * mz * y_end_gx;
+                      (l - m) * mz * gy * gx[nn + k * n + j];
       f[nn + k * n + j] += gy * ((l - m) * mz * gx[k * n + j] + dz_uz) -
                            g * ((l - m) * mz * dy_ux - (l + m) * mz * gy * w(0, k, j));
       f[2 * nn + k * n + j] += g * (my * dzt_ux) + gy * dzt_uy;
@@ -229,11 +227,16 @@ void apply_tile(const Tile<T>& tile) {
 template <class T>
 TileFunction<T> find_tile_function(int degree) {
   switch (degree) {
-    case 3: return apply_tile<T, 3>;
-    case 4: return apply_tile<T, 4>;
-    case 5: return apply_tile<T, 5>;
-    case 6: return apply_tile<T, 6>;
-    default: throw ModelError("spectral elements: the degree must be in 3..6");
+    case 3:
+      return apply_tile<T, 3>;
+    case 4:
+      return apply_tile<T, 4>;
+    case 5:
+      return apply_tile<T, 5>;
+    case 6:
+      return apply_tile<T, 6>;
+    default:
+      throw ModelError("spectral elements: the degree must be in 3..6");
   }
 }
 

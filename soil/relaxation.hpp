@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace easydyn::soil {
+
+/// Generalised Maxwell body whose damping ratio is nearly constant over a band, with relaxation rates common
+/// to all layers so that the memory variables can be nodal displacements:
+///
+///   force = K_u (u - sum_l y_l zeta_l),   zeta_l. + omega_l zeta_l = omega_l u
+///   modulus(omega) = M_u (1 - sum_l y_l omega_l / (omega_l + i omega)),   damping ratio = Im / (2 Re)
+///
+/// The unrelaxed modulus M_u is such that Re(modulus) is the given one at the reference frequency; below it
+/// the ground is softer, above it stiffer (about 2 xi / pi per factor e in frequency), as causality demands.
+/// Reference: H. Emmerich, M. Korn, Geophysics 52(9), 1987 (recalled, not re-read).
+struct Relaxation {
+  Eigen::VectorXd rates;    ///< omega_l [rad/s]
+  Eigen::VectorXd weights;  ///< y_l
+  double unrelaxed = 1;     ///< M_u / modulus at the reference frequency
+
+  double compute_damping_ratio(double frequency) const;  ///< at `frequency` [Hz]
+};
+
+/// Least-squares fit of `mechanisms` rates, evenly spaced on a logarithmic scale, over `lowest`..`highest`
+/// [Hz].
+/// @param ratio      damping ratio, 0 <= ratio < 0.2
+/// @param reference  frequency at which the modulus is given [Hz]; the ratio holds exactly there
+Relaxation fit_relaxation(double ratio, double lowest, double highest, double reference, int mechanisms);
+
+}  // namespace easydyn::soil
