@@ -11,13 +11,16 @@ using Eigen::Vector3d;
 
 SpringDamper::SpringDamper(std::string name, double stiffness, double damping, double free_length)
     : name_(std::move(name)), stiffness_(stiffness), damping_(damping), free_length_(free_length) {
-  if (!(stiffness >= 0)) throw ModelError(fmt::format("spring \"{}\": k = {} N/m, must be >= 0", name_, stiffness));
-  if (!(damping >= 0)) throw ModelError(fmt::format("spring \"{}\": d = {} N s/m, must be >= 0", name_, damping));
+  if (!(stiffness >= 0))
+    throw ModelError(fmt::format("spring \"{}\": k = {} N/m, must be >= 0", name_, stiffness));
+  if (!(damping >= 0))
+    throw ModelError(fmt::format("spring \"{}\": d = {} N s/m, must be >= 0", name_, damping));
   if (!(free_length >= 0))
     throw ModelError(fmt::format("spring \"{}\": free length = {} m, must be >= 0", name_, free_length));
 }
 
-void SpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B, const Vector3d& p_B) {
+void SpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,
+                         const Vector3d& p_B) {
   const Vector3d p_0A = frame_A.point(p_A), p_0B = frame_B.point(p_B);
   const Vector3d p_AB = p_0B - p_0A;
   length_ = p_AB.norm();

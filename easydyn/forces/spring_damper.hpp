@@ -23,7 +23,8 @@ class SpringDamper {
 
   /// Applies the force, in System::forces(). Points in the axes of their frames [m].
   /// @throws ModelError if A and B coincide
-  void apply(const Frame& frame_A, const Eigen::Vector3d& p_A, const Frame& frame_B, const Eigen::Vector3d& p_B);
+  void apply(const Frame& frame_A, const Eigen::Vector3d& p_A, const Frame& frame_B,
+             const Eigen::Vector3d& p_B);
 
   double force() const { return force_; }    ///< at the last evaluation [N], tension positive
   double length() const { return length_; }  ///< at the last evaluation [m]

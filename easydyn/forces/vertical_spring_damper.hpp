@@ -7,8 +7,8 @@
 
 namespace easydyn {
 
-/// Spring and damper that act along the vertical only, with a preload: a suspension whose given geometry is the
-/// loaded state.
+/// Spring and damper that act along the vertical only, with a preload: a suspension whose given geometry is
+/// the loaded state.
 ///
 ///   F = F0 - k u - d u.          u = (z_B - z_A) - (z_B - z_A)_nominal      on B upward, on A downward
 ///
@@ -21,13 +21,15 @@ class VerticalSpringDamper {
   /// @param height     z_B - z_A in the nominal geometry [m]
   /// @param preload    F0, compression in the nominal geometry [N]
   /// @throws ModelError naming the element, the value and the range
-  VerticalSpringDamper(std::string name, double stiffness, double damping, double height = 0, double preload = 0);
+  VerticalSpringDamper(std::string name, double stiffness, double damping, double height = 0,
+                       double preload = 0);
 
   /// Applies the force, in System::forces(). Points in the axes of their frames [m].
-  void apply(const Frame& frame_A, const Eigen::Vector3d& p_A, const Frame& frame_B, const Eigen::Vector3d& p_B);
+  void apply(const Frame& frame_A, const Eigen::Vector3d& p_A, const Frame& frame_B,
+             const Eigen::Vector3d& p_B);
 
-  double force() const { return force_; }            ///< compression at the last evaluation [N]
-  double displacement() const { return extension_; } ///< u at the last evaluation [m]
+  double force() const { return force_; }             ///< compression at the last evaluation [N]
+  double displacement() const { return extension_; }  ///< u at the last evaluation [m]
   const std::string& name() const { return name_; }
 
  private:

@@ -6,7 +6,8 @@
 
 namespace easydyn {
 
-/// A scalar function f(q, t) with everything that dynamics needs of it, exact and propagated by the chain rule:
+/// A scalar function f(q, t) with everything that dynamics needs of it, exact and propagated by the chain
+/// rule:
 ///
 ///   value     f
 ///   rate      f.  = sum_i (df/dq_i) qd_i + df/dt            total time rate

@@ -14,14 +14,14 @@ namespace {
 class BlockPool {
  public:
   Gradient::Entry* take(std::size_t capacity) {
-    auto& shelf = shelves_[static_cast<std::size_t>(std::countr_zero(capacity))];
+    auto& shelf = shelf_of(capacity);
     if (shelf.empty()) return new Gradient::Entry[capacity];
     Gradient::Entry* block = shelf.back();
     shelf.pop_back();
     return block;
   }
   void give_back(Gradient::Entry* block, std::size_t capacity) noexcept {
-    auto& shelf = shelves_[static_cast<std::size_t>(std::countr_zero(capacity))];
+    auto& shelf = shelf_of(capacity);
     try {
       shelf.push_back(block);
     } catch (...) {
@@ -34,7 +34,9 @@ class BlockPool {
   }
 
  private:
-  std::array<std::vector<Gradient::Entry*>, 32> shelves_;
+  using Shelf = std::vector<Gradient::Entry*>;
+  Shelf& shelf_of(std::size_t capacity) { return shelves_[std::countr_zero(capacity) & 31]; }
+  std::array<Shelf, 32> shelves_;
 };
 
 BlockPool& pool() {

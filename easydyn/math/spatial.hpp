@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 
 /// Six-dimensional vectors of rigid-body mechanics, all in world axes and about one common point O that is
-/// fixed in space (chosen near the mechanism at each evaluation, so that no digit is lost far from the origin).
-/// Reference: R. Featherstone, Rigid Body Dynamics Algorithms, Springer, 2008, ch. 2.
+/// fixed in space (chosen near the mechanism at each evaluation, so that no digit is lost far from the
+/// origin). Reference: R. Featherstone, Rigid Body Dynamics Algorithms, Springer, 2008, ch. 2.
 namespace easydyn::spatial {
 
 using Eigen::Matrix3d;
@@ -38,7 +38,9 @@ struct Wrench {
 };
 
 /// Power of a wrench on a twist.
-inline double dot(const Twist& a, const Wrench& f) { return a.w.dot(f.moment) + a.v.dot(f.force); }
+inline double dot(const Twist& a, const Wrench& f) {
+  return a.w.dot(f.moment) + a.v.dot(f.force);
+}
 
 /// Rate of a motion vector b carried along by the motion a:  a x b.
 inline Twist cross(const Twist& a, const Twist& b) {

@@ -17,9 +17,9 @@ Body::Body(std::string name, const Inertia& inertia) : name_(std::move(name)), i
   const Eigen::Vector3d J = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia.J).eigenvalues();
   const double slack = 1e-9 * J[2];
   if (!(J[0] >= -slack && J[0] + J[1] >= J[2] - slack))
-    throw ModelError(fmt::format(
-        "body \"{}\": principal moments {}, {}, {} kg m^2 must be >= 0 and obey J1 + J2 >= J3", name_, J[0], J[1],
-        J[2]));
+    throw ModelError(
+        fmt::format("body \"{}\": principal moments {}, {}, {} kg m^2 must be >= 0 and obey J1 + J2 >= J3",
+                    name_, J[0], J[1], J[2]));
 }
 
 Eigen::Vector3d Body::acceleration() const {

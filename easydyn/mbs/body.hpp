@@ -35,7 +35,9 @@ class Body {
   Eigen::Vector3d angular_velocity() const { return frame_.angular_velocity(); }
   /// Acceleration of the centre of mass [m/s^2]; after an evaluation with given accelerations.
   Eigen::Vector3d acceleration() const;
-  void add_force(const Eigen::Vector3d& F_0, const Eigen::Vector3d& p_0P) const { frame_.add_force(F_0, p_0P); }
+  void add_force(const Eigen::Vector3d& F_0, const Eigen::Vector3d& p_0P) const {
+    frame_.add_force(F_0, p_0P);
+  }
   void add_moment(const Eigen::Vector3d& M_0) const { frame_.add_moment(M_0); }
 
  private:

@@ -28,9 +28,15 @@ class Motion {
   Expr e_[3];             // angle, or the three displacements
 };
 
-inline Motion rotate_x(Expr angle) { return Motion::rotation(Eigen::Vector3d::UnitX(), std::move(angle)); }
-inline Motion rotate_y(Expr angle) { return Motion::rotation(Eigen::Vector3d::UnitY(), std::move(angle)); }
-inline Motion rotate_z(Expr angle) { return Motion::rotation(Eigen::Vector3d::UnitZ(), std::move(angle)); }
+inline Motion rotate_x(Expr angle) {
+  return Motion::rotation(Eigen::Vector3d::UnitX(), std::move(angle));
+}
+inline Motion rotate_y(Expr angle) {
+  return Motion::rotation(Eigen::Vector3d::UnitY(), std::move(angle));
+}
+inline Motion rotate_z(Expr angle) {
+  return Motion::rotation(Eigen::Vector3d::UnitZ(), std::move(angle));
+}
 /// About any axis, given in the axes of the frame that the motion starts from; it need not have unit length.
 inline Motion rotate(const Eigen::Vector3d& axis, Expr angle) {
   return Motion::rotation(axis.normalized(), std::move(angle));
@@ -38,7 +44,9 @@ inline Motion rotate(const Eigen::Vector3d& axis, Expr angle) {
 inline Motion translate(Expr x, Expr y, Expr z) {
   return Motion::translation(std::move(x), std::move(y), std::move(z));
 }
-inline Motion translate(const Eigen::Vector3d& p) { return Motion::translation(p.x(), p.y(), p.z()); }
+inline Motion translate(const Eigen::Vector3d& p) {
+  return Motion::translation(p.x(), p.y(), p.z());
+}
 
 /// A frame moving with the mechanism: its pose T_0F = (R_0F, p_0F) and the motions that lead to it.
 ///
@@ -52,10 +60,9 @@ class Frame {
       : Frame(Frame() * first) {}
 
   friend Frame operator*(const Frame& frame, const Motion& motion) { return frame.followed_by(motion); }
-  friend Frame operator*(const Motion& first, const Motion& second) { return Frame(first) * second; }
 
-  const Eigen::Matrix3d& rotation() const { return R_; }             ///< R_0F: axes of F in world axes
-  const Eigen::Vector3d& origin() const { return p_; }               ///< p_0F [m], world axes
+  const Eigen::Matrix3d& rotation() const { return R_; }  ///< R_0F: axes of F in world axes
+  const Eigen::Vector3d& origin() const { return p_; }    ///< p_0F [m], world axes
   Eigen::Vector3d point(const Eigen::Vector3d& p_FP) const { return p_ + R_ * p_FP; }  ///< p_0P [m]
   Eigen::Vector3d direction(const Eigen::Vector3d& d_F) const { return R_ * d_F; }
 
@@ -80,5 +87,9 @@ class Frame {
   MotionTree* tree_ = nullptr;
   int motion_ = -1;
 };
+
+inline Frame operator*(const Motion& first, const Motion& second) {
+  return Frame(first) * second;
+}
 
 }  // namespace easydyn

@@ -34,8 +34,8 @@ LinearStructure::LinearStructure(std::string name, SparseMatrix M, SparseMatrix 
     for (int row = 0; row < A.outerSize(); ++row) {
       for (SparseMatrix::InnerIterator it(A, row); it; ++it) {
         if (!std::isfinite(it.value()))
-          throw ModelError(fmt::format("structure \"{}\": {}({}, {}) = {}, must be finite", name_, letters[i], row,
-                                       it.col(), it.value()));
+          throw ModelError(fmt::format("structure \"{}\": {}({}, {}) = {}, must be finite", name_, letters[i],
+                                       row, it.col(), it.value()));
         largest = std::max(largest, std::abs(it.value()));
         half_bandwidth_ = std::max(half_bandwidth_, std::abs(static_cast<int>(it.col()) - row));
       }

@@ -12,9 +12,15 @@ namespace {
 thread_local MotionTree* current_tree = nullptr;
 }
 
-MotionTree* MotionTree::current() { return current_tree; }
-MotionTree::Scope::Scope(MotionTree& tree) : previous_(current_tree) { current_tree = &tree; }
-MotionTree::Scope::~Scope() { current_tree = previous_; }
+MotionTree* MotionTree::current() {
+  return current_tree;
+}
+MotionTree::Scope::Scope(MotionTree& tree) : previous_(current_tree) {
+  current_tree = &tree;
+}
+MotionTree::Scope::~Scope() {
+  current_tree = previous_;
+}
 
 void MotionTree::clear() {
   size_ = 0;

@@ -18,8 +18,8 @@ struct EnergyAccounts {
 
 /// The varying motions of a system at one instant, and the sweeps over them.
 ///
-/// Motion k leads from the frame of its parent by a scalar e_k(q, t) along the screw S_k (world axes, about the
-/// common point O). A forward sweep gives the twists and bias accelerations
+/// Motion k leads from the frame of its parent by a scalar e_k(q, t) along the screw S_k (world axes, about
+/// the common point O). A forward sweep gives the twists and bias accelerations
 ///
 ///   V_k = V_p + S_k e_k.          A_k = A_p + S_k e_k.. + V_k x S_k e_k.
 ///
@@ -33,10 +33,10 @@ struct EnergyAccounts {
 class MotionTree {
  public:
   struct Carried {
-    Inertia inertia;     // body axes, about the centre of mass
-    Eigen::Matrix3d R;   // R_0G
-    Eigen::Vector3d p;   // p_0G
-    int motion;          // -1: fixed to the ground
+    Inertia inertia;    // body axes, about the centre of mass
+    Eigen::Matrix3d R;  // R_0G
+    Eigen::Vector3d p;  // p_0G
+    int motion;         // -1: fixed to the ground
   };
 
   /// The tree that frames attach to while positions() runs in this thread.
@@ -84,11 +84,11 @@ class MotionTree {
     Eigen::Vector3d axis, point;
     double rate, bias;
     Gradient gradient;
-    spatial::Twist S, V, A;       // screw, twist, acceleration (bias, or with qdd)
-    spatial::Twist A_bias;        // S e..(qdd = 0) + V x S e., of this motion alone
-    spatial::Wrench applied;      // about O
-    spatial::Wrench f;            // backward sweep
-    spatial::Inertia composite;   // backward sweep
+    spatial::Twist S, V, A;      // screw, twist, acceleration (bias, or with qdd)
+    spatial::Twist A_bias;       // S e..(qdd = 0) + V x S e., of this motion alone
+    spatial::Wrench applied;     // about O
+    spatial::Wrench f;           // backward sweep
+    spatial::Inertia composite;  // backward sweep
   };
   void check_velocities() const;
 

@@ -9,7 +9,9 @@ namespace easydyn {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Coordinate::operator Expr() const { return Expr::coordinate(index_, value(), rate()); }
+Coordinate::operator Expr() const {
+  return Expr::coordinate(index_, value(), rate());
+}
 
 double Coordinate::value() const {
   if (!system_->q_) throw ModelError("a coordinate has a value in positions() and forces() only");
@@ -29,8 +31,8 @@ Coordinate System::coordinate(std::string name, double initial, double initial_r
     if (c.name == name)
       throw ModelError(fmt::format("system \"{}\": there are two coordinates named \"{}\"", name_, name));
   if (!std::isfinite(initial) || !std::isfinite(initial_rate))
-    throw ModelError(fmt::format("coordinate \"{}\": initial value {} and rate {} must be finite", name, initial,
-                                 initial_rate));
+    throw ModelError(fmt::format("coordinate \"{}\": initial value {} and rate {} must be finite", name,
+                                 initial, initial_rate));
   coordinates_.push_back({std::move(name), initial, initial_rate});
   return Coordinate(*this, static_cast<int>(coordinates_.size()) - 1);
 }
@@ -45,7 +47,9 @@ LinearStructure& System::structure(std::string name, SparseMatrix M, SparseMatri
   return *structures_.back();
 }
 
-int System::size() const { return structure_offset(static_cast<int>(structures_.size())); }
+int System::size() const {
+  return structure_offset(static_cast<int>(structures_.size()));
+}
 
 int System::structure_offset(int k) const {
   int offset = body_size();
@@ -94,7 +98,8 @@ void System::place(double t, const double* q, const double* qd, const PortMotion
   }
   for (const Body& b : bodies_) {
     if (!b.is_placed_)
-      throw ModelError(fmt::format("body \"{}\" of system \"{}\" is not placed by positions()", b.name(), name_));
+      throw ModelError(
+          fmt::format("body \"{}\" of system \"{}\" is not placed by positions()", b.name(), name_));
     tree_.add_body(b.inertia_, b.frame_.rotation(), b.frame_.origin(), b.frame_.motion_index());
   }
 
@@ -129,21 +134,22 @@ System::PortMotionFunction System::motion_of(const State& state) const {
 
 void System::check_size(const State& state) const {
   if (state.q.size() != size() || state.qd.size() != size() || state.qdd.size() != size())
-    throw ModelError(fmt::format("system \"{}\" has {} coordinates, the state has q {}, qd {}, qdd {}", name_, size(),
-                                 state.q.size(), state.qd.size(), state.qdd.size()));
+    throw ModelError(fmt::format("system \"{}\" has {} coordinates, the state has q {}, qd {}, qdd {}", name_,
+                                 size(), state.q.size(), state.qd.size(), state.qdd.size()));
 }
 
 void System::compute_residual(const State& state, Eigen::Ref<VectorXd> r) {
   check_size(state);
   r.setZero();
-  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state), r.data());
+  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state),
+                        r.data());
 
   // Structures: inertia, damping and stiffness less the port forces.
   for (int k = 0; k < static_cast<int>(structures_.size()); ++k) {
     const LinearStructure& s = *structures_[static_cast<std::size_t>(k)];
     const int at = structure_offset(k);
-    r.segment(at, s.size()) = s.M() * state.qdd.segment(at, s.size()) + s.C() * state.qd.segment(at, s.size()) +
-                              s.K() * state.q.segment(at, s.size());
+    r.segment(at, s.size()) = s.M() * state.qdd.segment(at, s.size()) +
+                              s.C() * state.qd.segment(at, s.size()) + s.K() * state.q.segment(at, s.size());
   }
   for (const PortRecord& p : ports_) {
     const int at = structure_offset(p.structure);
@@ -203,7 +209,8 @@ EnergyBalance System::compute_energy(const State& state) {
 void System::evaluate(const State& state) {
   check_size(state);
   VectorXd r(body_size());
-  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state), r.data());
+  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state),
+                        r.data());
 }
 
 Port System::touch(const LinearStructure& structure, const PortShape& shape) {

@@ -40,8 +40,19 @@ class System {
   System(const System&) = delete;
   System& operator=(const System&) = delete;
 
+  // ---- description: by the user's class, or by an assembly (a vehicle, a track) that is built into it ----
+
+  /// Declares a coordinate with its value and rate at the start.
+  Coordinate coordinate(std::string name, double initial = 0, double initial_rate = 0);
+  Body& body(std::string name, const Inertia& inertia);
+  LinearStructure& structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K);
+  /// Touches a structure at a place, inside forces(). Call in the same order at each evaluation.
+  Port touch(const LinearStructure& structure, const PortShape& shape);
+
+  // ---- what the system is, and its equations ----
+
   const std::string& name() const { return name_; }
-  int size() const;                                          ///< all coordinates
+  int size() const;                                                        ///< all coordinates
   int body_size() const { return static_cast<int>(coordinates_.size()); }  ///< those of the bodies
   /// Name of coordinate i; of a structure's: "structure[k]".
   std::string coordinate_name(int i) const;
@@ -60,7 +71,8 @@ class System {
   /// h - Q: the residual at qdd = 0.
   Eigen::VectorXd compute_bias(const State& state);
   /// M and h - Q of the bodies' coordinates in one evaluation (no structures); sizes body_size().
-  void compute_mass_and_bias(const State& state, Eigen::Ref<Eigen::MatrixXd> M, Eigen::Ref<Eigen::VectorXd> bias);
+  void compute_mass_and_bias(const State& state, Eigen::Ref<Eigen::MatrixXd> M,
+                             Eigen::Ref<Eigen::VectorXd> bias);
   EnergyBalance compute_energy(const State& state);
   /// Places bodies and computes velocities, forces and accelerations at a state, so that `bodies()` answer.
   void evaluate(const State& state);
@@ -83,11 +95,6 @@ class System {
   const std::vector<PortRecord>& ports() const { return ports_; }
 
  protected:
-  /// Declares a coordinate with its value and rate at the start.
-  Coordinate coordinate(std::string name, double initial = 0, double initial_rate = 0);
-  Body& body(std::string name, const Inertia& inertia);
-  LinearStructure& structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K);
-
   /// Places every body: `rod = rotate_y(a) * translate(0, 0, -l / 2);`. Called at each evaluation.
   virtual void positions() = 0;
   /// Applies forces; velocities are known. Called at each evaluation.
@@ -99,8 +106,6 @@ class System {
   /// Weight of all bodies: uniform field [m/s^2], downward along z by default.
   void gravity(double g = 9.81) { gravity(Eigen::Vector3d(0, 0, -g)); }
   void gravity(const Eigen::Vector3d& field);
-  /// Touches a structure at a place. Call in the same order at each evaluation.
-  Port touch(const LinearStructure& structure, const PortShape& shape);
   /// Energy accounts, for force elements of one's own.
   EnergyAccounts& energy() { return tree_.energy(); }
 
@@ -122,7 +127,7 @@ class System {
   MotionTree tree_;
   std::vector<PortRecord> ports_;
   double t_ = 0;
-  const double* q_ = nullptr;   // during an evaluation
+  const double* q_ = nullptr;  // during an evaluation
   const double* qd_ = nullptr;
   const PortMotionFunction* port_motion_ = nullptr;
 };

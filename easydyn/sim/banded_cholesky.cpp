@@ -29,9 +29,10 @@ BandedCholesky::BandedCholesky(const SparseMatrix& A, int half_bandwidth, const 
     double pivot = row_i[i];
     for (int k = first; k < i; ++k) pivot -= row_i[k] * row_i[k];
     if (!(pivot > 0))
-      throw SolverError(fmt::format("structure \"{}\": matrix is not positive definite at coordinate {} "
-                                    "(pivot {:.3g}); is it free to move, or is a stiffness or mass negative?",
-                                    name, i, pivot));
+      throw SolverError(
+          fmt::format("structure \"{}\": matrix is not positive definite at coordinate {} "
+                      "(pivot {:.3g}); is it free to move, or is a stiffness or mass negative?",
+                      name, i, pivot));
     row_i[i] = 1 / std::sqrt(pivot);
   }
 }
@@ -39,7 +40,9 @@ BandedCholesky::BandedCholesky(const SparseMatrix& A, int half_bandwidth, const 
 template <int columns>
 void BandedCholesky::solve_columns(double* X, int stride) const {
   using Row = Eigen::Array<double, 1, columns>;
-  const auto row = [X, stride](int i) { return Eigen::Map<Row>(X + static_cast<std::ptrdiff_t>(i) * stride); };
+  const auto row = [X, stride](int i) {
+    return Eigen::Map<Row>(X + static_cast<std::ptrdiff_t>(i) * stride);
+  };
   // L y = x
   for (int i = 0; i < n_; ++i) {
     const double* L = L_.row(i).data() + (b_ - i);

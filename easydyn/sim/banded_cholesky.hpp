@@ -6,8 +6,8 @@
 
 namespace easydyn {
 
-/// Several right-hand sides side by side: row i holds entry i of each, so that solving eight costs little more
-/// than solving one.
+/// Several right-hand sides side by side: row i holds entry i of each, so that solving eight costs little
+/// more than solving one.
 using RightHandSides = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Cholesky factor A = L L^T of a symmetric positive definite banded matrix.

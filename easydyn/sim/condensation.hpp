@@ -16,8 +16,8 @@ namespace easydyn {
 ///
 ///   y = y_free + G F      q = q_base + c_q y      qd = qd_base + c_v y
 ///
-/// so the nonlinear problem keeps the bodies' coordinates and F only (Schur complement). The free response and
-/// all columns of G come from one pass of banded substitution with several right-hand sides.
+/// so the nonlinear problem keeps the bodies' coordinates and F only (Schur complement). The free response
+/// and all columns of G come from one pass of banded substitution with several right-hand sides.
 class Condensation {
  public:
   /// A = a_M M + a_C C + a_K K of every structure, factorised.

@@ -22,7 +22,8 @@ Linearization linearize(System& system, const State& state, double difference) {
       (shifted.*x)[i] = (state.*x)[i] + d;
       return system.compute_residual(shifted);
     };
-    return (r(-2 * difference) - 8 * r(-difference) + 8 * r(difference) - r(2 * difference)) / (12 * difference);
+    return (r(-2 * difference) - 8 * r(-difference) + 8 * r(difference) - r(2 * difference)) /
+           (12 * difference);
   };
   for (int i = 0; i < n; ++i) {
     lin.K.col(i) = column(&State::q, i);

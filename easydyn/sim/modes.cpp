@@ -30,7 +30,10 @@ std::vector<Mode> compute_modes(const Linearization& lin) {
   std::vector<Mode> modes;
   const bool is_symmetric = (lin.K - lin.K.transpose()).norm() <= 1e-7 * lin.K.norm();
 
-  if (lin.C.norm() == 0 && is_symmetric) {
+  // Below rounding of the differences, damping counts as none.
+  const bool is_undamped = lin.C.norm() <= 1e-12 * std::sqrt(lin.K.norm() * lin.M.norm());
+
+  if (is_undamped && is_symmetric) {
     const MatrixXd K = 0.5 * (lin.K + lin.K.transpose());
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K, lin.M);
     if (eigen.info() != Eigen::Success) throw SolverError("modes: the mass matrix is not positive definite");

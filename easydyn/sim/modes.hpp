@@ -16,10 +16,11 @@ struct Mode {
   Eigen::VectorXcd shape;     ///< n coordinates, largest entry 1
 };
 
-/// Modes of M x.. + C x. + K x = 0, sorted by frequency: one per pair of complex poles, and one per real pole.
+/// Modes of M x.. + C x. + K x = 0, sorted by frequency: one per pair of complex poles, and one per real
+/// pole.
 ///
-/// From the eigenvalues of the state matrix [0 I; -M^-1 K, -M^-1 C]; without damping (C = 0) and with symmetric K
-/// from the symmetric generalised problem, to machine precision.
+/// From the eigenvalues of the state matrix [0 I; -M^-1 K, -M^-1 C]; without damping (C = 0) and with
+/// symmetric K from the symmetric generalised problem, to machine precision.
 /// @throws SolverError if M is singular or the eigenvalue solver fails
 std::vector<Mode> compute_modes(const Linearization& linearization);
 

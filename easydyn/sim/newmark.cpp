@@ -35,9 +35,10 @@ void set_consistent_accelerations(System& system, State& state) {
     system.compute_mass_and_bias(state, M, body_bias);
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
     if (!lu.isInvertible())
-      throw SolverError(fmt::format("system \"{}\": the mass matrix is singular at t = {} s (rank {} of {}); "
-                                    "does every coordinate move a mass?",
-                                    system.name(), state.t, lu.rank(), n));
+      throw SolverError(
+          fmt::format("system \"{}\": the mass matrix is singular at t = {} s (rank {} of {}); "
+                      "does every coordinate move a mass?",
+                      system.name(), state.t, lu.rank(), n));
     state.qdd.head(n) = lu.solve(-bias.head(n));
   }
   for (int k = 0; k < static_cast<int>(system.structures().size()); ++k) {
@@ -52,7 +53,11 @@ Newmark::Newmark(System& system, const NewmarkOptions& options)
     : Newmark(system, consistent_initial_state(system), options) {}
 
 Newmark::Newmark(System& system, State state, const NewmarkOptions& options)
-    : system_(system), state_(std::move(state)), options_(options), n_bodies_(system.body_size()), h_(options.step) {
+    : system_(system),
+      state_(std::move(state)),
+      options_(options),
+      n_bodies_(system.body_size()),
+      h_(options.step) {
   const auto require_positive = [](double value, const char* name) {
     if (!(value > 0)) throw ModelError(fmt::format("Newmark: {} = {}, must be > 0", name, value));
   };
@@ -95,12 +100,14 @@ void Newmark::evaluate(const VectorXd& z, State& next, VectorXd& residual) {
   set_unknowns(z, next);
   system_.compute_body_residual(
       next.t, next.q.data(), next.qd.data(), next.qdd.data(),
-      [&](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces); }, residual.data());
+      [&](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces); },
+      residual.data());
   ++statistics_.evaluations;
   if (static_cast<int>(system_.ports().size()) != forces.size())
-    throw ModelError(fmt::format("system \"{}\": forces() touched {} ports, {} before; touch the same ports in the "
-                                 "same order at each evaluation",
-                                 system_.name(), system_.ports().size(), forces.size()));
+    throw ModelError(
+        fmt::format("system \"{}\": forces() touched {} ports, {} before; touch the same ports in the "
+                    "same order at each evaluation",
+                    system_.name(), system_.ports().size(), forces.size()));
   for (int p = 0; p < forces.size(); ++p)
     residual[n_bodies_ + p] = forces[p] - system_.ports()[static_cast<std::size_t>(p)].force;
 }
@@ -147,7 +154,8 @@ bool Newmark::try_step(double h, State& next) {
       at += s->size();
     }
     condensation_->solve(b, system_.ports());
-    condensation_->set_bases(q_star_.tail(n_structures), beta * h * h, qd_star_.tail(n_structures), gamma_ * h);
+    condensation_->set_bases(q_star_.tail(n_structures), beta * h * h, qd_star_.tail(n_structures),
+                             gamma_ * h);
   }
 
   // Newton on accelerations and port forces.
@@ -165,7 +173,8 @@ bool Newmark::try_step(double h, State& next) {
     scale_ = scale_.cwiseMax(z.cwiseAbs());
     const double size = correction.cwiseAbs().cwiseQuotient(scale_).maxCoeff();
     if (!std::isfinite(size)) return false;
-    const bool stalled_at_roundoff = size < 1e-3 * std::sqrt(options_.newton_tolerance) && size >= 0.5 * previous;
+    const bool stalled_at_roundoff =
+        size < 1e-3 * std::sqrt(options_.newton_tolerance) && size >= 0.5 * previous;
     if (size <= options_.newton_tolerance || stalled_at_roundoff) {
       set_unknowns(z, next);
       port_forces_ = z.tail(n_ports);
@@ -186,7 +195,8 @@ bool Newmark::try_step(double h, State& next) {
 
 double Newmark::local_error(const State& next, double h) const {
   if (next.qdd.size() == 0) return 0;
-  return std::abs(beta - 1.0 / 6) * h * h * (next.qdd - state_.qdd).lpNorm<Eigen::Infinity>() / options_.tolerance;
+  return std::abs(beta - 1.0 / 6) * h * h * (next.qdd - state_.qdd).lpNorm<Eigen::Infinity>() /
+         options_.tolerance;
 }
 
 void Newmark::step() {
@@ -196,9 +206,10 @@ void Newmark::step() {
     const bool converged = try_step(h_, next);
     if (!options_.variable_step) {
       if (!converged)
-        throw SolverError(fmt::format("Newmark: no convergence at t = {} s with step {} s after {} iterations, "
-                                      "residual {:.3g}; try a smaller step",
-                                      state_.t, h_, options_.max_iterations, last_residual_));
+        throw SolverError(
+            fmt::format("Newmark: no convergence at t = {} s with step {} s after {} iterations, "
+                        "residual {:.3g}; try a smaller step",
+                        state_.t, h_, options_.max_iterations, last_residual_));
       break;
     }
 
@@ -218,9 +229,10 @@ void Newmark::step() {
     port_forces_ = forces_before;
     h_ *= std::min(factor, 0.5);
     if (h_ < options_.min_step)
-      throw SolverError(fmt::format("Newmark: the step fell below {} s at t = {} s (local error {:.3g} of the "
-                                    "tolerance, residual {:.3g}); is there an impact, or is the tolerance too tight?",
-                                    options_.min_step, state_.t, error, last_residual_));
+      throw SolverError(
+          fmt::format("Newmark: the step fell below {} s at t = {} s (local error {:.3g} of the "
+                      "tolerance, residual {:.3g}); is there an impact, or is the tolerance too tight?",
+                      options_.min_step, state_.t, error, last_residual_));
   }
   state_ = std::move(next);
   ++statistics_.steps;

@@ -15,8 +15,9 @@ class Condensation;
 struct NewmarkOptions {
   double step = 1e-3;          ///< h [s]: the step, or the first one where it varies; > 0
   bool variable_step = false;  ///< choose h from the local error
-  double tolerance = 1e-6;     ///< bound of the local error of each coordinate per step [m, rad]; variable step only
-  double min_step = 1e-10;     ///< [s]
+  double tolerance =
+      1e-6;  ///< bound of the local error of each coordinate per step [m, rad]; variable step only
+  double min_step = 1e-10;                                    ///< [s]
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   double newton_tolerance = 1e-10;  ///< last Newton correction of accelerations and port forces, relative
   int max_iterations = 25;
@@ -30,9 +31,9 @@ struct NewmarkOptions {
 /// Second order, no numerical damping, unconditionally stable for linear systems; the energy of a nonlinear
 /// conservative system oscillates at second order. Period error of a mode (w h)^2 / 12.
 ///
-/// Unknowns of Newton's iteration are the accelerations of the bodies' coordinates and the port forces of linear
-/// structures, which are condensed out (`Condensation`) with one factorisation per step size. The iteration
-/// matrix is kept until convergence slows down.
+/// Unknowns of Newton's iteration are the accelerations of the bodies' coordinates and the port forces of
+/// linear structures, which are condensed out (`Condensation`) with one factorisation per step size. The
+/// iteration matrix is kept until convergence slows down.
 ///
 /// With a variable step the local error is estimated by |beta - 1/6| h^2 |qdd_1 - qdd_0| for each coordinate
 /// (Zienkiewicz & Xie, Earthquake Eng. Struct. Dyn. 20, 1991); `tolerance` bounds it per step: it is not the
@@ -71,8 +72,8 @@ class Newmark {
   NewmarkOptions options_;
   Statistics statistics_;
   int n_bodies_;
-  double h_;                    // size of the next step
-  double prepared_step_ = 0;    // for which condensation and Jacobian hold
+  double h_;                  // size of the next step
+  double prepared_step_ = 0;  // for which condensation and Jacobian hold
   std::unique_ptr<Condensation> condensation_;
   Eigen::VectorXd port_forces_, q_star_, qd_star_, scale_, y_;
   Eigen::PartialPivLU<Eigen::MatrixXd> jacobian_;

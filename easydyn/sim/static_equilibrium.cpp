@@ -33,8 +33,8 @@ class StaticProblem {
     VectorXd b(n_structures);
     int at = 0;
     for (const auto& s : system_.structures()) {
-      b.segment(at, s->size()) = -(s->M() * guess.qdd.segment(n_ + at, s->size()) +
-                                   s->C() * guess.qd.segment(n_ + at, s->size()));
+      b.segment(at, s->size()) =
+          -(s->M() * guess.qdd.segment(n_ + at, s->size()) + s->C() * guess.qd.segment(n_ + at, s->size()));
       at += s->size();
     }
     condensation_.solve(b, system_.ports());
@@ -66,7 +66,8 @@ class StaticProblem {
   }
 
   std::string name(int i) const {
-    return i < n_ ? "coordinate \"" + system_.coordinate_name(i) + "\"" : fmt::format("port force {}", i - n_);
+    return i < n_ ? "coordinate \"" + system_.coordinate_name(i) + "\""
+                  : fmt::format("port force {}", i - n_);
   }
 
   std::exception_ptr thrown;  // by the user's program, inside KINSOL
@@ -111,14 +112,38 @@ struct Kinsol {
   }
 };
 
+Eigen::MatrixXd difference_jacobian(StaticProblem& problem, const VectorXd& z) {
+  const int n = problem.size();
+  Eigen::MatrixXd J(n, n);
+  VectorXd shifted = z, r(n), r_shifted(n);
+  problem.residual(z, r);
+  for (int i = 0; i < n; ++i) {
+    shifted[i] = z[i] + 1e-7 * std::max(std::abs(z[i]), 1e-2);
+    problem.residual(shifted, r_shifted);
+    J.col(i) = (r_shifted - r) / (shifted[i] - z[i]);
+    shifted[i] = z[i];
+  }
+  return J;
+}
+
+// Says which coordinate is the trouble: the one that moves without stiffness, else the one least in balance.
 [[noreturn]] void throw_unsettled(StaticProblem& problem, const VectorXd& z, const std::string& why) {
   VectorXd r(problem.size());
   problem.residual(z, r);
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(difference_jacobian(problem, z));
   Eigen::Index worst = 0;
+  if (!lu.isInvertible()) {
+    lu.kernel().col(0).cwiseAbs().maxCoeff(&worst);
+    throw SolverError(
+        fmt::format("static equilibrium: {}; nothing holds {} (no stiffness at value {:.6g}, "
+                    "residual {:.3g} N or N m): add a spring or lock it",
+                    why, problem.name(static_cast<int>(worst)), z[worst], r[worst]));
+  }
   const double largest = r.cwiseAbs().maxCoeff(&worst);
-  throw SolverError(fmt::format("static equilibrium: {}; largest residual {:.3g} N (or N m) at {}, value {:.6g}; "
-                                "is it held by a spring, and is the first guess near?",
-                                why, largest, problem.name(static_cast<int>(worst)), z[worst]));
+  throw SolverError(
+      fmt::format("static equilibrium: {}; largest residual {:.3g} N or N m at {}, value {:.6g}; "
+                  "is the first guess near?",
+                  why, largest, problem.name(static_cast<int>(worst)), z[worst]));
 }
 
 void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
@@ -156,16 +181,7 @@ void polish(StaticProblem& problem, VectorXd& z, double reference, const StaticO
   VectorXd r(n), shifted, r_shifted(n);
   problem.residual(z, r);
   for (int iteration = 0; iteration < 10; ++iteration) {
-    Eigen::MatrixXd J(n, n);
-    shifted = z;
-    for (int i = 0; i < n; ++i) {
-      const double delta = 1e-7 * std::max(std::abs(z[i]), 1e-2);
-      shifted[i] = z[i] + delta;
-      problem.residual(shifted, r_shifted);
-      J.col(i) = (r_shifted - r) / (shifted[i] - z[i]);
-      shifted[i] = z[i];
-    }
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(J);
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(difference_jacobian(problem, z));
     if (!lu.isInvertible()) throw_unsettled(problem, z, "the stiffness matrix is singular");
     shifted = z - lu.solve(r);
     problem.residual(shifted, r_shifted);

@@ -1,0 +1,223 @@
+// A tram over a rail joint: contact forces, track motion and the load on the ground (step 1 of a prediction).
+//
+//      rear body         centre body        front body
+//   [===========]o[====================]o[===========]     --> v
+//     O  o              O    O              o  O
+//   ========================================|~~~~~~~~~~     rail, step of 1 mm at x = 0
+//    |pad |    |    |    |    |    |    |    |    |         pads, sleepers, ballast
+//   (m_f)~(m_f)~(m_f)~(m_f)~ ...                            coupled lumped mass (CLM) foundation
+//
+// Shows: a vehicle from its data sheet, built into a multibody system with a flexible track; nonlinear
+// contact; a smooth start in the quasi-static motion; the ballast reactions handed to the program `soil`.
+// Run: ./run tram        (then `soil` and the report follow)
+// Reference: G. Kouroussis, O. Verlinden, Prediction of railway ground vibrations: accuracy of a coupled
+// lumped mass model for representing the track/soil interaction, Soil Dyn. Earthq. Eng. 69, 2015.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "easydyn/easydyn.hpp"
+#include "easydyn/results/progress.hpp"
+#include "easydyn/visu/scene.hpp"
+#include "soil/surface_loads.hpp"
+#include "track/passage.hpp"
+#include "track/passage_files.hpp"
+#include "track/track_scene.hpp"
+#include "vehicles/planar_vehicle.hpp"
+#include "vehicles/t2000_like.hpp"
+#include "vehicles/vehicle_scene.hpp"
+
+using namespace easydyn;
+using namespace easydyn::units;
+
+namespace {
+
+struct Options {
+  double speed = 30;        // [km/h]
+  double step_height = 1;   // [mm]
+  double time_step = 1e-4;  // [s]
+  std::string foundation = "clm";
+  std::filesystem::path output = "results/tram";
+};
+
+// The multibody system: the tram, the track and a contact under every wheel pair.
+class TramOnTrack : public System {
+ public:
+  TramOnTrack(const track::TrackModel& track_model, double x0, double speed,
+              const std::shared_ptr<const track::Profile>& profile)
+      : System("tram on track"), track(*this, track_model), x0_(x0), speed_(speed) {
+    for (const vehicles::PlanarVehicle::Wheel& w : tram.wheels())
+      contacts.emplace_back(w.name, track::HertzContact(1e11, w.contacts), w.radius, w.static_load, profile);
+  }
+
+  vehicles::PlanarVehicle tram{*this, vehicles::t2000_like()};
+  track::FlexibleTrack track;
+  std::vector<track::WheelRailContact> contacts;
+
+ protected:
+  void positions() override { tram.place(x0_ + speed_ * time()); }
+  void forces() override {
+    gravity(vehicles::gravity);
+    tram.apply_suspensions();
+    for (std::size_t w = 0; w < contacts.size(); ++w) contacts[w].apply(*tram.wheels()[w].body, track);
+  }
+
+ private:
+  double x0_, speed_;
+};
+
+// The foundation asked for; the simpler ones keep the constants of the CLM and drop what they do not have.
+track::Foundation choose_foundation(const std::string& name, const track::Foundation& clm) {
+  const track::Clm c = track::as_clm(clm);
+  if (name == "rigid") return track::RigidGround{};
+  if (name == "winkler") return track::Winkler{c.k_f, c.d_f};
+  if (name == "winkler-mass") return track::WinklerMass{c.m_f, c.k_f, c.d_f};
+  return clm;
+}
+
+// Tram and track as an animated scene, at about 25 pictures per second of a slow-motion replay.
+visu::Scene make_scene(const track::Passage& passage, const TramOnTrack& system, double x0, double v) {
+  std::vector<Eigen::Index> rows;
+  const Eigen::Index every = std::max<Eigen::Index>(1, passage.time.size() / 500);
+  for (Eigen::Index i = 0; i < passage.time.size(); i += every) rows.push_back(i);
+
+  vehicles::VehicleMotion motion;
+  motion.bodies = passage.body_names;
+  motion.time = passage.time(rows);
+  motion.origin_x = x0 + v * motion.time.array();
+  motion.height = passage.body_height(rows, Eigen::all);
+  motion.pitch = passage.body_pitch(rows, Eigen::all);
+
+  visu::Scene scene;
+  scene.name = "Tram on the deflecting track";
+  scene.exaggeration = 100;
+  vehicles::add_vehicle(scene, system.tram.data(), motion);
+  track::add_track(scene, passage, system.track.model().data(), rows);
+  scene.ground = -0.35;
+  scene.camera = {.target = {0, 0, 1}, .width = 26, .azimuth = -70, .elevation = 12, .follow = "centre body"};
+  return scene;
+}
+
+int run(const Options& options, const std::string& command) {
+  // 1. Data: tram, track, foundation, and where everything is.
+  const double v = options.speed * km / h;
+  track::TrackData data = track::t2000_like_track();
+  data.foundation = choose_foundation(options.foundation, data.foundation);
+  const double loaded = 18 * m;   // the ground is loaded from -18 m to 18 m about the joint
+  const double approach = 3 * m;  // of the first wheel to the loaded part, and of the last one away from it
+  const double margin = 10 * m;   // of track beyond the wheels, before its absorbing ends
+
+  // The sleepers are centred between the bays about the joint, so that x = 0 is mid-span.
+  const vehicles::RailVehicle vehicle = vehicles::t2000_like();
+  double reach = 0;  // farthest wheel from the origin of the tram
+  for (const auto& gear : vehicle.gears)
+    for (const auto& pair : gear.wheel_pairs) reach = std::max(reach, std::abs(pair.x));
+  const double spacing = data.sleeper_spacing;
+  const double x0 = -(loaded + approach + reach);
+  const int half_bays = static_cast<int>(std::ceil((-x0 + reach + margin) / spacing)) + data.ends.bays;
+  const track::TrackModel track_model(data, 2 * half_bays + 1, -(half_bays + 0.5) * spacing);
+  const auto profile = std::make_shared<track::StepProfile>(0, options.step_height * mm);
+
+  // 2. The system, 3. its passage.
+  TramOnTrack system(track_model, x0, v, profile);
+  std::vector<const track::WheelRailContact*> contacts;
+  for (const auto& c : system.contacts) contacts.push_back(&c);
+  track::PassageOptions passage_options;
+  passage_options.duration = -2 * x0 / v;
+  passage_options.step = options.time_step;
+  passage_options.output_step = std::max(1.0, std::round(5e-4 / options.time_step)) * options.time_step;
+  passage_options.first_sleeper_x = -loaded;
+  passage_options.last_sleeper_x = loaded;
+  fmt::print("tram: {} at {:.0f} km/h, step of {} mm, foundation {}\n", vehicle.label(), options.speed,
+             options.step_height, track::kind_of(data.foundation));
+  fmt::print("tram: {} bays of track, {} coordinates, {:.2f} s in steps of {} s\n", track_model.bays(),
+             system.size(), passage_options.duration, options.time_step);
+  results::Progress progress("passage");
+  const track::Passage passage = track::compute_passage(system, system.track, contacts, passage_options,
+                                                        [&](double fraction) { progress.update(fraction); });
+  progress.finish();
+
+  // 4. What came out.
+  const double weight = system.tram.weight();
+  double peak_ratio = 0;
+  for (std::size_t w = 0; w < system.contacts.size(); ++w)
+    peak_ratio = std::max(peak_ratio, passage.contact_force.col(static_cast<Eigen::Index>(w)).maxCoeff() /
+                                          system.contacts[w].static_load());
+  const std::vector<track::SummaryFigure> summary = {
+      {"vehicle weight", weight / kN, "kN"},
+      {"sum of the ballast reactions at the start / weight", passage.total_ballast_reaction_at_start / weight,
+       "1"},
+      {"largest contact force", passage.contact_force.maxCoeff() / kN, "kN"},
+      {"largest dynamic load factor of a wheel pair", peak_ratio, "1"},
+      {"largest rail deflection", passage.rail_deflection.maxCoeff() / mm, "mm"},
+      {"largest ballast reaction", passage.ballast_reaction.maxCoeff() / kN, "kN"},
+  };
+  for (const auto& figure : summary)
+    fmt::print("  {:<52} {:10.4g} {}\n", figure.name, figure.value, figure.unit);
+
+  // 5. Files.
+  std::vector<Parameter> parameters = vehicles::parameters(vehicle);
+  for (const Parameter& p : track::parameters(data)) parameters.push_back(p);
+  for (const Parameter& p : std::vector<Parameter>{
+           {"run", "speed", v, "m/s", "option --speed"},
+           {"run", "height of the rail step", options.step_height * mm, "m", "option --step-height"},
+           {"run", "time step", options.time_step, "s", "option --time-step"},
+           {"run", "Hertz constant of one wheel", 1e11, "N/m^1.5", "F: railFE"},
+           {"run", "acceleration of gravity", vehicles::gravity, "m/s2", "conventional"}})
+    parameters.push_back(p);
+
+  const results::Provenance provenance{
+      .program = "tram",
+      .command = command,
+      .convention =
+          "x along the track, y left, z up; track displacements and ground loads positive downward"};
+  std::filesystem::create_directories(options.output);
+  track::write_passage(options.output / "results.h5", passage, parameters, summary,
+                       visu::to_json(make_scene(passage, system, x0, v)), provenance);
+  track::write_passage_channels(options.output / "channels.csv", passage, 0);
+
+  soil::SurfaceLoads loads;
+  loads.time = passage.time;
+  loads.force = passage.ballast_reaction;
+  for (double x : passage.sleeper_x)
+    loads.footprints.push_back(
+        {.x = x, .y = 0, .length = data.footprint_length, .width = data.footprint_width});
+  soil::write_surface_loads(options.output / "surface_loads.h5", loads, provenance);
+  fmt::print("tram: wrote results.h5, surface_loads.h5 and channels.csv to {}\n", options.output.string());
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"A tram over a rail joint: contact forces, track motion and the load on the ground."};
+  app.add_option("--speed", options.speed, "speed [km/h]")
+      ->capture_default_str()
+      ->check(CLI::Range(1.0, 120.0));
+  app.add_option("--step-height", options.step_height, "height of the rail step, up > 0, down < 0 [mm]")
+      ->capture_default_str()
+      ->check(CLI::Range(-20.0, 20.0));
+  app.add_option("--foundation", options.foundation, "what the ballast rests on")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"rigid", "winkler", "winkler-mass", "clm"}));
+  app.add_option("--time-step", options.time_step, "of Newmark's method [s]")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e-3));
+  app.add_option("--output", options.output, "folder of the results")->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : 2;
+  }
+  try {
+    return run(options, results::join_command_line(argc, argv));
+  } catch (const std::exception& e) {
+    std::cerr << "tram: " << e.what() << "\n";
+    return 1;
+  }
+}

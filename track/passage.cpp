@@ -1,0 +1,142 @@
+#include "track/passage.hpp"
+
+#include <cmath>
+
+#include "easydyn/require.hpp"
+#include "easydyn/sim/static_equilibrium.hpp"
+
+namespace easydyn::track {
+
+using Eigen::Index;
+using Eigen::VectorXd;
+
+namespace {
+
+// Fills the rows of a Passage from states.
+class PassageRecorder {
+ public:
+  PassageRecorder(System& system, const FlexibleTrack& track,
+                  const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
+                  Index rows)
+      : system_(system), track_(track), contacts_(contacts) {
+    const TrackModel& model = track.model();
+    for (int j = 0; j < model.sleepers(); ++j)
+      if (model.sleeper_x(j) >= options.first_sleeper_x - 1e-9 &&
+          model.sleeper_x(j) <= options.last_sleeper_x + 1e-9)
+        sleepers_.push_back(j);
+    const auto ns = static_cast<Index>(sleepers_.size());
+    const auto nw = static_cast<Index>(contacts.size()), nb = static_cast<Index>(system.bodies().size());
+    p_.time.resize(rows);
+    p_.sleeper_x.resize(ns);
+    for (Index s = 0; s < ns; ++s) p_.sleeper_x[s] = model.sleeper_x(sleepers_[static_cast<std::size_t>(s)]);
+    for (auto* matrix : {&p_.rail_deflection, &p_.sleeper_displacement, &p_.ballast_reaction})
+      matrix->resize(rows, ns);
+    has_foundation_ = model.foundation_dof(0) >= 0;
+    if (has_foundation_) p_.foundation_displacement.resize(rows, ns);
+    p_.contact_force.resize(rows, nw);
+    p_.contact_position.resize(rows, nw);
+    for (const WheelRailContact* c : contacts) p_.contact_names.push_back(c->name());
+    p_.coordinates.resize(rows, system.body_size());
+    for (int i = 0; i < system.body_size(); ++i) p_.coordinate_names.push_back(system.coordinate_name(i));
+    p_.body_acceleration.resize(rows, nb);
+    p_.body_height.resize(rows, nb);
+    p_.body_pitch.resize(rows, nb);
+    for (const Body& b : system.bodies()) p_.body_names.push_back(b.name());
+    for (auto* energy :
+         {&p_.kinetic_energy, &p_.potential_energy, &p_.dissipated_energy, &p_.supplied_energy})
+      energy->setZero(rows);
+  }
+
+  // Powers are integrated over every step (trapezoidal rule), whether it is recorded or not.
+  void integrate(const State& state) {
+    const EnergyBalance now = system_.compute_energy(state);
+    const double h = state.t - last_time_;
+    if (has_last_) {
+      dissipated_ += 0.5 * h * (last_.dissipated + now.dissipated);
+      supplied_ += 0.5 * h * (last_.supplied + now.supplied);
+    }
+    last_ = now;
+    last_time_ = state.t;
+    has_last_ = true;
+  }
+
+  // After integrate(): the system has just been evaluated at this state.
+  void record(const State& state) {
+    const TrackModel& model = track_.model();
+    const VectorXd q = track_.coordinates(state.q), qd = track_.coordinates(state.qd);
+    p_.time[row_] = state.t;
+    for (Index s = 0; s < p_.sleeper_x.size(); ++s) {
+      const int j = sleepers_[static_cast<std::size_t>(s)];
+      p_.rail_deflection(row_, s) = q[model.rail_dof(j * model.data().elements_per_bay)];
+      p_.sleeper_displacement(row_, s) = q[model.sleeper_dof(j)];
+      if (has_foundation_) p_.foundation_displacement(row_, s) = q[model.foundation_dof(j)];
+      p_.ballast_reaction(row_, s) = model.ballast_reaction(j, q, qd);
+    }
+    for (std::size_t w = 0; w < contacts_.size(); ++w) {
+      p_.contact_force(row_, static_cast<Index>(w)) = contacts_[w]->force();
+      p_.contact_position(row_, static_cast<Index>(w)) = contacts_[w]->x();
+    }
+    p_.coordinates.row(row_) = state.q.head(system_.body_size()).transpose();
+    Index b = 0;
+    for (const Body& body : system_.bodies()) {
+      p_.body_acceleration(row_, b) = body.acceleration().z();
+      p_.body_height(row_, b) = body.position().z();
+      p_.body_pitch(row_, b) = std::atan2(body.frame().rotation()(0, 2), body.frame().rotation()(2, 2));
+      ++b;
+    }
+    p_.kinetic_energy[row_] = last_.kinetic;
+    p_.potential_energy[row_] = last_.potential;
+    p_.dissipated_energy[row_] = dissipated_;
+    p_.supplied_energy[row_] = supplied_;
+    ++row_;
+  }
+
+  Passage& passage() { return p_; }
+
+ private:
+  System& system_;
+  const FlexibleTrack& track_;
+  const std::vector<const WheelRailContact*>& contacts_;
+  std::vector<int> sleepers_;
+  bool has_foundation_ = false, has_last_ = false;
+  EnergyBalance last_;
+  double last_time_ = 0, dissipated_ = 0, supplied_ = 0;
+  Index row_ = 0;
+  Passage p_;
+};
+
+}  // namespace
+
+Passage compute_passage(System& system, const FlexibleTrack& track,
+                        const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
+                        const std::function<void(double)>& progress) {
+  require_positive("passage", "duration", options.duration, "s");
+  require_positive("passage", "time step", options.step, "s");
+  require_positive("passage", "output step", options.output_step, "s");
+  const double ratio = options.output_step / options.step;
+  const auto every = static_cast<Index>(std::lround(ratio));
+  require(every >= 1 && std::abs(ratio - static_cast<double>(every)) < 1e-6 * ratio, "passage", "output step",
+          options.output_step, "s", fmt::format("a multiple of the time step {} s", options.step));
+
+  const State start = solve_quasi_static_motion(system, system.initial_state(), options.start_difference);
+  const auto outputs = static_cast<Index>(std::ceil(options.duration / options.output_step - 1e-9));
+  PassageRecorder recorder(system, track, contacts, options, outputs + 1);
+  recorder.integrate(start);
+  recorder.record(start);
+  recorder.passage().total_ballast_reaction_at_start =
+      track.model().ballast_reactions(track.coordinates(start.q), track.coordinates(start.qd)).sum();
+
+  Newmark integrator(system, start, {.step = options.step});
+  for (Index i = 1; i <= outputs; ++i) {
+    for (Index k = 0; k < every; ++k) {
+      integrator.step();
+      recorder.integrate(integrator.state());
+    }
+    recorder.record(integrator.state());
+    if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));
+  }
+  recorder.passage().statistics = integrator.statistics();
+  return std::move(recorder.passage());
+}
+
+}  // namespace easydyn::track

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "easydyn/sim/newmark.hpp"
+#include "track/flexible_track.hpp"
+#include "track/wheel_rail_contact.hpp"
+
+namespace easydyn::track {
+
+struct PassageOptions {
+  double duration = 1;             ///< [s], > 0
+  double step = 1e-4;              ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
+  double output_step = 5e-4;       ///< [s], a multiple of the step
+  double first_sleeper_x = 0;      ///< sleepers from here ...
+  double last_sleeper_x = 0;       ///< ... to here [m] are recorded
+  double start_difference = 2e-3;  ///< of the quasi-static start [s]
+};
+
+/// What a passage gives, one row per output time. Track displacements are positive **downward**.
+struct Passage {
+  Eigen::VectorXd time;                                ///< nt [s], from 0
+  std::vector<std::string> contact_names;              ///< nw
+  Eigen::MatrixXd contact_force, contact_position;     ///< nt x nw [N], [m]
+  Eigen::VectorXd sleeper_x;                           ///< ns recorded sleepers [m]
+  Eigen::MatrixXd rail_deflection;                     ///< nt x ns, above the sleepers [m]
+  Eigen::MatrixXd sleeper_displacement;                ///< nt x ns [m]
+  Eigen::MatrixXd foundation_displacement;             ///< nt x ns [m]; empty on rigid ground
+  Eigen::MatrixXd ballast_reaction;                    ///< nt x ns [N], compression positive
+  std::vector<std::string> coordinate_names;           ///< nq coordinates of the bodies
+  Eigen::MatrixXd coordinates;                         ///< nt x nq [m, rad]
+  std::vector<std::string> body_names;                 ///< nb
+  Eigen::MatrixXd body_acceleration;                   ///< nt x nb, vertical [m/s^2]
+  Eigen::MatrixXd body_height;                         ///< nt x nb, z of the centre of mass [m]
+  Eigen::MatrixXd body_pitch;                          ///< nt x nb, rotation about y, nose down [rad]
+  Eigen::VectorXd kinetic_energy, potential_energy;    ///< nt [J]
+  Eigen::VectorXd dissipated_energy, supplied_energy;  ///< nt [J], since the start
+  double total_ballast_reaction_at_start = 0;          ///< of all sleepers of the track [N]
+  Newmark::Statistics statistics;
+};
+
+/// Runs a system that moves over a flexible track, from the smooth quasi-static start at t = 0
+/// (`solve_quasi_static_motion`) with Newmark's method.
+/// @param contacts  those that the system applies, in the order of the result
+/// @param progress  called with the fraction done
+/// @throws ModelError on impossible options, SolverError if a step does not converge
+Passage compute_passage(System& system, const FlexibleTrack& track,
+                        const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
+                        const std::function<void(double fraction)>& progress = {});
+
+}  // namespace easydyn::track

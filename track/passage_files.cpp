@@ -1,0 +1,96 @@
+#include "track/passage_files.hpp"
+
+#include <fmt/format.h>
+
+#include "easydyn/results/channels.hpp"
+#include "easydyn/results/result_file.hpp"
+#include "easydyn/visu/json.hpp"
+
+namespace easydyn::track {
+
+namespace {
+
+namespace json = visu::json;
+
+std::string to_json(const std::vector<Parameter>& parameters) {
+  json::Value::Array list;
+  for (const Parameter& p : parameters)
+    list.push_back(json::object(
+        {{"group", p.group}, {"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"source", p.source}}));
+  return json::Value(std::move(list)).text();
+}
+
+std::string to_json(const std::vector<SummaryFigure>& summary) {
+  json::Value::Array list;
+  for (const SummaryFigure& f : summary)
+    list.push_back(json::object({{"name", f.name}, {"value", f.value}, {"unit", f.unit}}));
+  return json::Value(std::move(list)).text();
+}
+
+}  // namespace
+
+void write_passage(const std::filesystem::path& path, const Passage& p,
+                   const std::vector<Parameter>& parameters, const std::vector<SummaryFigure>& summary,
+                   const std::string& scene, const results::Provenance& provenance) {
+  results::ResultFile file(path, provenance);
+  file.write_vector("/time", p.time, {"s", "output time, uniform step", "time"});
+
+  file.write_names("/contact/names", p.contact_names, "wheel/rail contacts");
+  file.write_matrix("/contact/force", p.contact_force,
+                    {"N", "wheel/rail contact force", "compression positive"});
+  file.write_matrix("/contact/position", p.contact_position,
+                    {"m", "position of the contact", "x along the track"});
+
+  const std::string down = "downward";
+  file.write_vector("/sleeper/x", p.sleeper_x,
+                    {"m", "position of the recorded sleepers", "x along the track"});
+  file.write_matrix("/rail/deflection", p.rail_deflection, {"m", "rail above each sleeper", down});
+  file.write_matrix("/sleeper/displacement", p.sleeper_displacement, {"m", "sleeper", down});
+  if (p.foundation_displacement.size() > 0)
+    file.write_matrix("/foundation/displacement", p.foundation_displacement,
+                      {"m", "foundation u_f below each sleeper", down});
+  file.write_matrix("/ballast/reaction", p.ballast_reaction,
+                    {"N", "force of the ballast on the soil, k_b (u_s - u_f) + d_b (u_s' - u_f')", down});
+
+  file.write_names("/vehicle/names", p.coordinate_names, "coordinates of the vehicle");
+  file.write_matrix("/vehicle/position", p.coordinates,
+                    {"m, rad", "coordinates of the vehicle", "heave upward, pitch nose down"});
+  file.write_names("/vehicle/bodies", p.body_names, "bodies of the vehicle");
+  file.write_matrix("/vehicle/acceleration", p.body_acceleration,
+                    {"m/s2", "vertical acceleration of the centre of mass", "z up"});
+
+  file.write_vector("/energy/kinetic", p.kinetic_energy,
+                    {"J", "kinetic energy, vehicle and track", "scalar"});
+  file.write_vector("/energy/potential", p.potential_energy,
+                    {"J", "potential energy: weight, suspensions, contacts, track", "scalar"});
+  file.write_vector("/energy/dissipated", p.dissipated_energy, {"J", "heat since the start", "scalar"});
+  file.write_vector("/energy/supplied", p.supplied_energy,
+                    {"J", "work of the drive since the start", "scalar"});
+
+  file.write_text("/parameters", to_json(parameters), "JSON: group, name, value, unit, source");
+  file.write_text("/summary", to_json(summary), "JSON: name, value, unit");
+  if (!scene.empty()) file.write_text("/scene", scene, "JSON of the animated scene");
+  file.commit();
+}
+
+void write_passage_channels(const std::filesystem::path& path, const Passage& p, double x) {
+  results::ChannelTable table;
+  table.time = p.time;
+  for (std::size_t w = 0; w < p.contact_names.size(); ++w)
+    table.add("contact force, " + p.contact_names[w], "N", p.contact_force.col(static_cast<Eigen::Index>(w)));
+
+  Eigen::Index nearest = 0;
+  (p.sleeper_x.array() - x).abs().minCoeff(&nearest);
+  const std::string at = fmt::format(", x = {:.2f} m", p.sleeper_x[nearest]);
+  table.add("rail deflection" + at, "m", p.rail_deflection.col(nearest));
+  table.add("sleeper displacement" + at, "m", p.sleeper_displacement.col(nearest));
+  if (p.foundation_displacement.size() > 0)
+    table.add("foundation displacement" + at, "m", p.foundation_displacement.col(nearest));
+  table.add("ballast reaction" + at, "N", p.ballast_reaction.col(nearest));
+  for (std::size_t b = 0; b < p.body_names.size(); ++b)
+    table.add("vertical acceleration, " + p.body_names[b], "m/s2",
+              p.body_acceleration.col(static_cast<Eigen::Index>(b)));
+  results::write_channels(path, table);
+}
+
+}  // namespace easydyn::track

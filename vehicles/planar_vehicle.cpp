@@ -1,0 +1,112 @@
+#include "vehicles/planar_vehicle.hpp"
+
+#include <algorithm>
+
+namespace easydyn::vehicles {
+
+PlanarVehicle::PlanarVehicle(System& system, RailVehicle data)
+    : data_(std::move(data)), loads_(compute_axle_loads(data_)) {
+  // Car bodies, from front to rear; a hinge replaces the heave of the body behind it.
+  for (const CarBody& car : data_.bodies) {
+    car_bodies_.push_back(&system.body(car.name, Inertia(car.mass, car.pitch_inertia)));
+    const Hinge* hinge = nullptr;
+    for (const Hinge& h : data_.hinges)
+      if (h.rear_body == car.name) hinge = &h;
+    if (hinge)
+      cars_.push_back({std::nullopt, system.coordinate(car.name + ", pitch at the hinge"), hinge->x});
+    else
+      cars_.push_back({system.coordinate(car.name + ", heave"), system.coordinate(car.name + ", pitch"), 0});
+  }
+
+  // Running gears: frame, then its wheel pairs, each with its suspensions.
+  for (std::size_t g = 0; g < data_.gears.size(); ++g) {
+    const RunningGear& gear = data_.gears[g];
+    Body& frame = system.body(gear.name, Inertia(gear.frame_mass, gear.frame_pitch_inertia));
+    frames_.push_back(&frame);
+    GearMotion motion{
+        &frame, system.coordinate(gear.name + ", heave"), system.coordinate(gear.name + ", pitch"), {}, {}};
+    for (std::size_t s = 0; s < gear.secondaries.size(); ++s) {
+      const SecondarySuspension& suspension = gear.secondaries[s];
+      motion.secondaries.emplace_back(gear.name + ", secondary suspension", suspension.stiffness,
+                                      suspension.damping, 0, loads_.secondary[g][s]);
+    }
+    for (std::size_t w = 0; w < gear.wheel_pairs.size(); ++w) {
+      const WheelPair& pair = gear.wheel_pairs[w];
+      const WheelPairLoad& load = loads_.wheel_pairs[g][w];
+      const std::string name = gear.name + ", " + pair.name;
+      const double tyre_mass = pair.resilient ? double(pair.resilient->tyre_mass) : 0.0;
+      Body& hub = system.body(name + (pair.resilient ? ", hub" : ""), Inertia(pair.mass - tyre_mass));
+      WheelPairMotion wheel{
+          &hub,
+          system.coordinate(hub.name() + ", heave"),
+          nullptr,
+          std::nullopt,
+          {name + ", primary suspension", pair.primary_stiffness, pair.primary_damping, 0, load.primary},
+          std::nullopt,
+          pair.x};
+      if (pair.resilient) {
+        wheel.tyre = &system.body(name + ", tyre", Inertia(tyre_mass));
+        wheel.tyre_heave = system.coordinate(name + ", tyre, heave");
+        wheel.resilient.emplace(name + ", resilient wheel", pair.resilient->stiffness,
+                                pair.resilient->damping, 0, load.resilient);
+      }
+      wheels_.push_back(
+          {name, wheel.tyre ? wheel.tyre : wheel.hub, pair.x, pair.radius, pair.contacts, load.axle_load});
+      motion.wheel_pairs.push_back(std::move(wheel));
+    }
+    gears_.push_back(std::move(motion));
+  }
+}
+
+void PlanarVehicle::place(const Expr& x) {
+  std::vector<Frame> frame_of(cars_.size());
+  for (std::size_t c = 0; c < cars_.size(); ++c) {
+    const CarBody& car = data_.bodies[c];
+    if (cars_[c].heave) {
+      frame_of[c] = translate(x + double(car.x), 0, *cars_[c].heave) * rotate_y(cars_[c].pitch);
+    } else {
+      for (const Hinge& hinge : data_.hinges) {
+        if (hinge.rear_body != car.name) continue;
+        const auto front = static_cast<std::size_t>(data_.body_index(hinge.front_body));
+        frame_of[c] = frame_of[front] * translate(hinge.x - data_.bodies[front].x, 0, 0) *
+                      rotate_y(cars_[c].pitch) * translate(car.x - hinge.x, 0, 0);
+      }
+    }
+    *car_bodies_[c] = frame_of[c];
+  }
+  for (std::size_t g = 0; g < gears_.size(); ++g) {
+    GearMotion& gear = gears_[g];
+    *gear.frame = translate(x + double(data_.gears[g].x), 0, gear.heave) * rotate_y(gear.pitch);
+    for (WheelPairMotion& wheel : gear.wheel_pairs) {
+      *wheel.hub = translate(x + wheel.x, 0, wheel.hub_heave);
+      if (wheel.tyre) *wheel.tyre = translate(x + wheel.x, 0, *wheel.tyre_heave);
+    }
+  }
+}
+
+void PlanarVehicle::apply_suspensions() {
+  for (std::size_t g = 0; g < gears_.size(); ++g) {
+    GearMotion& gear = gears_[g];
+    const double gear_x = data_.gears[g].x;
+    for (std::size_t s = 0; s < gear.secondaries.size(); ++s) {
+      const SecondarySuspension& suspension = data_.gears[g].secondaries[s];
+      const auto body = static_cast<std::size_t>(data_.body_index(suspension.body));
+      gear.secondaries[s].apply(*gear.frame, {suspension.x - gear_x, 0, 0}, *car_bodies_[body],
+                                {suspension.x - data_.bodies[body].x, 0, 0});
+    }
+    for (WheelPairMotion& wheel : gear.wheel_pairs) {
+      wheel.primary.apply(*wheel.hub, {0, 0, 0}, *gear.frame, {wheel.x - gear_x, 0, 0});
+      if (wheel.resilient) wheel.resilient->apply(*wheel.tyre, {0, 0, 0}, *wheel.hub, {0, 0, 0});
+    }
+  }
+}
+
+double PlanarVehicle::front_wheel_x() const {
+  return std::max_element(wheels_.begin(), wheels_.end(), [](auto& a, auto& b) { return a.x < b.x; })->x;
+}
+
+double PlanarVehicle::rear_wheel_x() const {
+  return std::min_element(wheels_.begin(), wheels_.end(), [](auto& a, auto& b) { return a.x < b.x; })->x;
+}
+
+}  // namespace easydyn::vehicles
