@@ -4,9 +4,10 @@
 #   // Run: ./run double_pendulum --duration 2
 #   // Prints: period  1.234 s
 #
-# The words after the program's name are its options; it runs in FOLDER, which starts empty. Every `// Prints:`
-# line must be printed by the `// Run:` line above it, in this order; other lines may stand between. Words must
-# be equal, but numbers may differ by one unit of their last printed digit, and `...` stands for any word.
+# The words after the program's name are its options, up to a remark in parentheses; it runs in FOLDER, which
+# starts empty. Every `// Prints:` line must be printed by the `// Run:` line above it, in this order; other lines
+# may stand between. Words must be equal, but numbers may differ by one unit of their last printed digit, and `...`
+# stands for any word.
 set -euo pipefail
 program=$1 source=$2 folder=$3
 name=$(basename -- "$program")
@@ -72,7 +73,8 @@ while IFS= read -r line; do
   case $line in
     '// Run:'*)
       if ((runs > 0)); then check; fi
-      read -r -a words <<<"${line#// Run:}"
+      line=${line#// Run:}
+      read -r -a words <<<"${line%% (*}"
       while ((${#words[@]} > 0)) && [[ $(basename -- "${words[0]}") != "$name" ]]; do words=("${words[@]:1}"); done
       if ((${#words[@]} == 0)); then
         echo "$source: this line does not run $name: $line"

@@ -19,7 +19,7 @@ example() {
   call "$here/../examples/run_example.sh" "$scratch/pendulum" "$scratch/pendulum.cpp" "$scratch/folder"
 }
 
-example '// Run: ./run pendulum --short' '// Prints: Pendulum, options: --short' '// Prints: period 1.2340 s'
+example '// Run: ./run pendulum --short   (a remark)' '// Prints: Pendulum, options: --short' '// Prints: period 1.2340 s'
 expect "equal lines, other spaces" is "$code" 0
 example '// Run:  build/release/bin/pendulum' '// Prints: period 1.2341 s'
 expect "one unit of the last digit" is "$code" 0

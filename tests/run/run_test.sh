@@ -9,7 +9,8 @@ source "$here/check.sh"
 tree="$scratch/a house"
 mkdir -p "$tree/examples/sites" "$scratch/bin" "$scratch/elsewhere"
 cp "$here/../../run" "$tree/run"
-printf '// Tram on a soft site.\n//\n// Run: ./run tram\n' >"$tree/examples/tram.cpp"
+printf '// Tram on a soft site.\n//\n// Run: ./run tram\napp.add_option("--output")\n' >"$tree/examples/tram.cpp"
+cp "$tree/examples/tram.cpp" "$tree/examples/study.cpp"
 printf '// Double pendulum, from positions only.\n' >"$tree/examples/double_pendulum.cpp"
 touch "$tree/examples/sites/tram.toml"
 
@@ -41,7 +42,7 @@ while (($# > 0)); do
   case $1 in
     -B) mkdir -p "$2/bin"; touch "$2/build.ninja"; shift ;;
     --build)
-      for program in tram double_pendulum; do
+      for program in tram study double_pendulum; do
         cp "$scratch/bin/program" "$2/bin/$program"
       done
       cp "$scratch/bin/soil" "$2/bin/soil"
@@ -52,6 +53,7 @@ done
 END
 stand_in program <<'END'
 echo "$(basename "$0") $*" >>"$scratch/log"
+pwd >"$scratch/where"
 if [[ $* == *--help* ]]; then echo "help of $(basename "$0")"; exit 0; fi
 if [[ -e $scratch/fail_program ]]; then exit "$(<"$scratch/fail_program")"; fi
 while (($# > 0)); do
@@ -162,10 +164,16 @@ expect "the end of the build log is shown" has "$err" "error: no such thing"
 expect "nothing runs after a failed build" lacks "$log" "tram --output"
 rm "$scratch/fail_cmake"
 
-# Another program: its own folder, no soil.
-run double_pendulum
-expect "a program without a site" has "$log" "double_pendulum --output results/double_pendulum"
-expect "has no soil" lacks "$log" "soil"
+# Other programs: their own folder, no soil.
+run study --fast
+expect "a program without a site gets its folder" has "$log" "study --output results/study --fast"
+expect "and has no soil" lacks "$log" "soil"
+cd "$scratch/elsewhere"
+run double_pendulum 3
+expect "a program without --output is not given one" is "$(tail -n 1 <<<"$log")" "double_pendulum 3"
+expect "it runs in the repository" is "$(<"$scratch/where")" "$tree"
+expect "its folder is there" test -d "$tree/results/double_pendulum"
+cd "$tree"
 
 # Missing packages.
 echo libfmt-dev >"$scratch/missing"
