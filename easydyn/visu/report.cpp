@@ -10,6 +10,7 @@
 #include "easydyn/error.hpp"
 #include "easydyn/results/pending_file.hpp"
 #include "easydyn/visu/html.hpp"
+#include "easydyn/visu/number_text.hpp"
 #include "easydyn/visu/viewer_bundle.hpp"
 
 namespace easydyn::visu {
@@ -141,7 +142,7 @@ class Page {
       group = &p.group;
       html_ += fmt::format(
           "<tr><td>{}</td><td class=\"right\">{}</td><td>{}</td><td class=\"source\">{}</td></tr>\n",
-          html::inline_text(p.name), html::escaped(p.value), html::escaped(p.unit),
+          html::inline_text(p.name), short_number_text(p.value), html::escaped(p.unit == "1" ? "" : p.unit),
           html::inline_text(p.source));
     }
     html_ += "</tbody></table></div>\n";

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "easydyn/parameter.hpp"
 #include "easydyn/visu/chart.hpp"
 #include "easydyn/visu/scene.hpp"
 
@@ -22,11 +23,6 @@ struct Table {
 struct KeyFigure {
   std::string name, value, unit;
   std::string remark = {};
-};
-
-/// A parameter with its provenance; `group` collects them under one heading.
-struct Parameter {
-  std::string group, name, value, unit, source;
 };
 
 /// One self-contained HTML page: it opens offline and asks no server for anything. Text is plain; words
@@ -51,8 +47,8 @@ class Report {
   Report& add_chart(Chart chart);                 ///< over the full width
   Report& add_charts(std::vector<Chart> charts);  ///< side by side where there is room
   Report& add_table(Table table);
-  Report& add_parameters(std::vector<Parameter> parameters);
-  Report& add_text(std::string title, std::string text);  ///< verbatim, e.g. an input file
+  Report& add_parameters(std::vector<Parameter> parameters);  ///< with their sources, in groups of one name
+  Report& add_text(std::string title, std::string text);      ///< verbatim, e.g. an input file
   Report& add_animation(Scene scene, std::string caption = "");
 
   /// The page. Curves are thinned so that it stays below about 5 MB.

@@ -76,10 +76,10 @@ void add_animation(visu::Report& report, const ResultReader& track) {
 }
 
 void add_parameters(visu::Report& report, const char* title, const ResultReader& file) {
-  std::vector<visu::Parameter> parameters;
+  std::vector<Parameter> parameters;
   for_each_object(file, "/parameters", [&](const json::Value& v) {
-    parameters.push_back(
-        {member(v, "group"), member(v, "name"), member(v, "value"), member(v, "unit"), member(v, "source")});
+    parameters.push_back({v.at("group").string(), v.at("name").string(), v.at("value").number(),
+                          v.at("unit").string(), v.at("source").string()});
   });
   if (parameters.empty()) return;
   report.add_subsection(title);

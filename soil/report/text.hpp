@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "easydyn/visu/number_text.hpp"
+
 namespace easydyn::soil::report {
 
-/// A number with three significant digits (or more where its integer part has more); a dash for NaN.
-std::string number_text(double value, int digits = 3);
+using visu::number_text;
 
 /// `count` of the indices 0 ... n-1, evenly spread, first and last among them; all if there are no more.
 std::vector<Eigen::Index> spread(Eigen::Index n, Eigen::Index count);

@@ -43,7 +43,7 @@ TEST(Report, ShowsTextThatLooksLikeMarkupAsText) {
       .add_text("site.toml", "</pre>")
       .add_facts({{"<dt>", "</dd>"}})
       .add_key_figures({{"<name>", "<1>", "<unit>", "<remark>"}})
-      .add_parameters({{"<group>", "<p>", "<v>", "<u>", "<s>"}});
+      .add_parameters({{"<group>", "<p>", 1.5, "<u>", "<s>"}});
   Chart chart = noise(10);
   chart.title = "</script><script>alert(2)</script>";
   report.add_chart(chart);
