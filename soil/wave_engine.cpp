@@ -236,6 +236,7 @@ void WaveEngine<T>::form_line(Field field, int layer, int Y, int Z, T* out) cons
 template <class T>
 template <class Finish>
 void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
+  const FlushSubnormals flush;
   const GllRule rule(N_);
   const int n = N_ + 1, rows = lattice_.ny(), slabs = lattice_.nz();
   const std::size_t size = line_size();
@@ -320,6 +321,7 @@ template <class T>
 template <class Finish>
 void WaveEngine<T>::finish_seam(int thread, const Finish& finish) {
   if (thread == 0) return;
+  const FlushSubnormals flush;
   Scratch& scratch = scratch_[thread];
   for (int Z = 0; Z < nZ_; ++Z) {
     T* f = scratch.seam_high.data() + Z * line_size();

@@ -1,0 +1,101 @@
+// Cost of a time step of the ground (soil/wave_engine.hpp) against the memory bandwidth of the machine.
+//
+//   dof_per_second   3 x nodes x steps / s, all threads of the run
+//   dof_per_cpu_second   the same per second of processor time, waiting threads included
+//   bytes_per_dof    memory of the fields per degree of freedom
+
+#include <benchmark/benchmark.h>
+
+#include <ctime>
+#include <thread>
+#include <vector>
+
+#include "soil/relaxation.hpp"
+#include "soil/wave_engine.hpp"
+
+namespace {
+
+using namespace easydyn::soil;
+
+/// Processor time of all threads [s]; on a shared machine it says more than the clock on the wall.
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// About 2 million degrees of freedom: 46 x (80 / degree) x (48 / degree) elements of 1.5 m.
+Lattice make_box(int degree) {
+  Lattice lattice;
+  lattice.degree = degree;
+  lattice.half_model = true;
+  for (int i = 0; i <= 46; ++i) lattice.x.push_back(1.5 * i);
+  for (int i = 0; i <= 80 / degree; ++i) lattice.y.push_back(1.5 * i);
+  for (int i = 48 / degree; i >= 0; --i) lattice.z.push_back(-1.5 * i);
+  lattice.z.back() = 0;
+  lattice.layer.assign(lattice.nz(), 1);
+  lattice.layer.back() = 0;
+  return lattice;
+}
+
+template <class T>
+void run_steps(benchmark::State& state, int degree, int mechanisms) {
+  const int threads = static_cast<int>(state.range(0));
+  const Lattice lattice = make_box(degree);
+  const Relaxation body = fit_relaxation(0.03, 2, 62, 20, mechanisms);
+  const std::vector<double> weights(body.weights.data(), body.weights.data() + mechanisms);
+  const std::vector<double> rates(body.rates.data(), body.rates.data() + mechanisms);
+  const std::vector<EngineMaterial> materials{{5.3e7, 2.3e7, 1900, 0, weights},
+                                              {3.2e8, 1.4e8, 1900, 0, weights}};
+  WaveEngine<T> engine(lattice, materials, rates, {}, threads);
+  engine.set_time_step(1e-4);
+  const int X = engine.nodes_x() / 2;
+  for (int step = 0; step < 20; ++step) engine.advance({{X, 0, -1e3}}, false);
+  const double start = cpu_seconds();
+  for (auto _ : state) engine.advance({{X, 0, -1e3}}, false);
+  state.counters["dof_per_second"] =
+      benchmark::Counter(static_cast<double>(lattice.dofs()), benchmark::Counter::kIsIterationInvariantRate);
+  const double steps = static_cast<double>(state.iterations());
+  state.counters["dof_per_cpu_second"] =
+      steps * static_cast<double>(lattice.dofs()) / (cpu_seconds() - start);
+  state.counters["bytes_per_dof"] =
+      WaveEngine<T>::compute_memory(lattice, mechanisms) / static_cast<double>(lattice.dofs());
+}
+
+void step_float(benchmark::State& state, int degree, int mechanisms) {
+  run_steps<float>(state, degree, mechanisms);
+}
+void step_double(benchmark::State& state, int degree, int mechanisms) {
+  run_steps<double>(state, degree, mechanisms);
+}
+
+/// a = b + s c with arrays far larger than any cache.
+void triad(benchmark::State& state) {
+  const int threads = static_cast<int>(state.range(0));
+  const std::size_t size = std::size_t{1} << 26;
+  std::vector<float> a(size, 0.0f), b(size, 1.0f), c(size, 2.0f);
+  for (auto _ : state) {
+    std::vector<std::thread> team;
+    for (int t = 0; t < threads; ++t)
+      team.emplace_back([&, t] {
+        for (std::size_t i = size * t / threads; i < size * (t + 1) / threads; ++i) a[i] = b[i] + 3.0f * c[i];
+      });
+    for (std::thread& thread : team) thread.join();
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(static_cast<int64_t>(state.iterations() * size * 3 * sizeof(float)));
+}
+
+void use_threads(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgName("threads")->Arg(1);
+  if (std::thread::hardware_concurrency() > 1)
+    benchmark->Arg(static_cast<int>(std::thread::hardware_concurrency()));
+  benchmark->UseRealTime()->Unit(benchmark::kMillisecond);
+}
+
+BENCHMARK_CAPTURE(step_float, degree4, 4, 0)->Name("elastic_step/degree4/float")->Apply(use_threads);
+BENCHMARK_CAPTURE(step_float, degree5, 5, 0)->Name("elastic_step/degree5/float")->Apply(use_threads);
+BENCHMARK_CAPTURE(step_float, degree6, 6, 0)->Name("elastic_step/degree6/float")->Apply(use_threads);
+BENCHMARK_CAPTURE(step_double, degree4, 4, 0)->Name("elastic_step/degree4/double")->Apply(use_threads);
+BENCHMARK_CAPTURE(step_float, damped4, 4, 3)->Name("damped_step/degree4/float")->Apply(use_threads);
+BENCHMARK(triad)->Apply(use_threads);
+
+}  // namespace
