@@ -137,7 +137,7 @@ void read_settings(const TomlTable& root, Site& site) {
   site.highest_frequency = solver.number("highest_frequency", "Hz", positive, site.highest_frequency);
   site.damping_frequency = solver.number("damping_frequency", "Hz", positive, site.damping_frequency);
   site.points_per_wavelength =
-      solver.number("points_per_wavelength", "", {.low = 4}, site.points_per_wavelength);
+      solver.number("points_per_wavelength", "", {.low = 4, .high = 50}, site.points_per_wavelength);
   site.margin = solver.number("margin", "m", not_negative, site.margin);
 
   const TomlTable loads = root.table("loads");

@@ -27,7 +27,7 @@ namespace easydyn::soil {
 ///     [solver]                                # optional, like each of its keys
 ///     highest_frequency = 50                  # [Hz]
 ///     damping_frequency = 20                  # [Hz]
-///     points_per_wavelength = 5.5             # >= 4
+///     points_per_wavelength = 5.5             # 4 to 50
 ///     margin = 3                              # [m]
 ///
 ///     [loads]                                 # optional, like each of its keys

@@ -187,27 +187,4 @@ Vibrations read_vibrations(const std::filesystem::path& path) {
   return v;
 }
 
-RecouplingError compute_recoupling_error(const Vibrations& v, const results::ResultReader& track_results) {
-  const Eigen::VectorXd sleeper_x = track_results.read_vector("/sleeper/x");
-  const Eigen::MatrixXd foundation = track_results.read_matrix("/foundation/displacement");
-  if (foundation.cols() != sleeper_x.size()) {
-    throw InputError(
-        fmt::format("{}: \"/foundation/displacement\" has {} columns, must have {}, one per \"/sleeper/x\"",
-                    track_results.path().string(), foundation.cols(), sleeper_x.size()));
-  }
-  constexpr double same_place = 1e-3;  // [m]
-  std::vector<Eigen::Index> footprints, sleepers;
-  for (Eigen::Index j = 0; j < v.footprint_x.size(); ++j) {
-    Eigen::Index nearest = 0;
-    if (sleeper_x.size() > 0 &&
-        (sleeper_x.array() - v.footprint_x(j)).abs().minCoeff(&nearest) < same_place) {
-      footprints.push_back(j);
-      sleepers.push_back(nearest);
-    }
-  }
-  return compute_recoupling_error(v.time, v.footprint_displacement(Eigen::all, footprints),
-                                  track_results.read_vector("/time"), foundation(Eigen::all, sleepers),
-                                  v.footprint_taper(footprints), v.highest_frequency);
-}
-
 }  // namespace easydyn::soil

@@ -8,7 +8,6 @@
 #include "easydyn/parameter.hpp"
 #include "easydyn/results/result_file.hpp"
 #include "soil/indicators.hpp"
-#include "soil/recoupling.hpp"
 #include "soil/site.hpp"
 
 namespace easydyn::soil {
@@ -37,12 +36,5 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& vibra
 
 /// @throws InputError naming the file, the dataset and what is wrong
 Vibrations read_vibrations(const std::filesystem::path& path);
-
-/// Recoupling error of the track that loaded the ground: /foundation/displacement of its `results.h5`, at the
-/// sleepers whose x is that of a footprint (within 1 mm), against the footprint displacement.
-/// @throws InputError if a dataset is missing (a track on rigid ground has no foundation); ModelError if no
-///         footprint with its full load is a sleeper
-RecouplingError compute_recoupling_error(const Vibrations& vibrations,
-                                         const results::ResultReader& track_results);
 
 }  // namespace easydyn::soil

@@ -139,7 +139,7 @@ TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
   EXPECT_EQ(fault_of("highest_frequency = 40", "highest_frequency = 0"),
             "site.toml:28:21: [solver]: highest_frequency = 0 Hz, must be > 0");
   EXPECT_EQ(fault_of("margin = 4", "points_per_wavelength = 3"),
-            "site.toml:29:25: [solver]: points_per_wavelength = 3, must be >= 4");
+            "site.toml:29:25: [solver]: points_per_wavelength = 3, must be >= 4 and <= 50");
   EXPECT_EQ(fault_of("taper_length = 6", "taper_length = -6"),
             "site.toml:32:16: [loads]: taper_length = -6 m, must be >= 0");
 }

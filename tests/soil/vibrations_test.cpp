@@ -86,23 +86,5 @@ TEST(Vibrations, AreRefusedWhenSizesDisagreeOrValuesAreNotFinite) {
   EXPECT_EQ(folder.count(), 0);
 }
 
-TEST(Vibrations, AreComparedWithTheTrackAtTheSameSleepers) {
-  const TemporaryFolder folder;
-  const Vibrations v = make_vibrations();
-  // Five sleepers, the three in the middle on the footprints; the foundation sinks 10 % more than the soil.
-  Eigen::MatrixXd foundation = Eigen::MatrixXd::Constant(1000, 5, 1);
-  foundation.middleCols(1, 3) = 1.1 * v.footprint_displacement;
-  results::ResultFile file(folder / "results.h5", {});
-  const results::Meaning metres{.units = "m", .description = "", .frame = "downward"};
-  file.write_vector("/time", v.time, metres);
-  file.write_vector("/sleeper/x", (Eigen::VectorXd(5) << -1.2, -0.6, 0, 0.6, 1.2).finished(), metres);
-  file.write_matrix("/foundation/displacement", foundation, metres);
-  file.commit();
-  const RecouplingError error = compute_recoupling_error(v, results::ResultReader(folder / "results.h5"));
-  EXPECT_EQ(error.footprints, 2);  // the first one is tapered
-  EXPECT_NEAR(error.total.l2, 0.1, 1e-6);
-  EXPECT_NEAR(error.quasi_static.peak, 0.1, 1e-6);
-}
-
 }  // namespace
 }  // namespace easydyn::soil

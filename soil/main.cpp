@@ -1,0 +1,181 @@
+// The program `soil`: from load histories on the ground surface to vibrations at the receivers.
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <system_error>
+
+#include "easydyn/error.hpp"
+#include "soil/prediction.hpp"
+#include "soil/report/prediction_report.hpp"
+#include "soil/site_file.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+namespace fs = std::filesystem;
+
+const char* const run_footer = R"(
+Example:
+  soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output results/tram
+
+Files (docs/formats.md describes them):
+  SITE.toml         layers of the ground from the surface downward (the last one is a half-space), receivers,
+                    highest frequency
+  SURFACE_LOADS.h5  time, force, position and size of rectangular footprints; written by the train/track
+                    programs of examples/, or by any other program
+  vibrations.h5     ground velocity at the receivers, PPV, one-third octave spectrum, KB_Fmax, VdB, displacement
+                    of the footprints. It appears when the run is complete. One from an earlier run is first
+                    renamed to vibrations.previous.h5, so that a run that fails leaves none that looks new.
+
+Nothing is claimed above the highest frequency of the site file; the loads are limited to it.
+Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options.)";
+
+const char* const report_footer = R"(
+Example:
+  soil report results/tram
+
+Reads results.h5 (the train and the track, if there is one) and vibrations.h5 (the ground) from the folder and
+writes report.html beside them: one page that opens without a network.)";
+
+struct RunArguments {
+  fs::path site, loads, output;
+  bool dry_run = false;
+  bool full_model = false;
+  SolverOptions options;
+};
+
+void add_run_command(CLI::App& app, RunArguments& run) {
+  CLI::App& command =
+      *app.add_subcommand("run", "Waves in the ground under given loads, by 3D spectral elements");
+  command.footer(run_footer);
+  command.add_option("SITE", run.site, "Site file (TOML)")->required();
+  command.add_option("SURFACE_LOADS", run.loads, "Load histories (HDF5)")->required();
+  command.add_option("-o,--output", run.output, "Folder of vibrations.h5, made if needed")
+      ->required()
+      ->type_name("DIR");
+  command.add_flag("-n,--dry-run", run.dry_run, "Print mesh, memory, steps and expected time, and stop");
+  command.add_option("-j,--threads", run.options.threads, "Threads; 0: one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command.add_option("--degree", run.options.degree, "Polynomial degree of the elements")
+      ->check(CLI::Range(3, 6))
+      ->capture_default_str();
+  command
+      .add_option(
+          "--damping", run.options.damping,
+          "constant: the ratio of the site file at all frequencies; stiffness: in proportion to frequency; "
+          "none: elastic ground")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, DampingModel>{{"constant", DampingModel::constant_ratio},
+                                              {"stiffness", DampingModel::stiffness_proportional},
+                                              {"none", DampingModel::none}}))
+      ->default_str("constant")
+      ->type_name("MODEL");
+  command.add_flag("--double", run.options.double_precision,
+                   "Fields in double precision (slower, for checks)");
+  command.add_flag("--full-model", run.full_model,
+                   "Both sides of the track (loads that are not symmetric about y = 0)");
+}
+
+// An earlier result must not look like this run's.
+void set_aside(const fs::path& result) {
+  fs::path previous = result;
+  previous.replace_filename("vibrations.previous.h5");
+  std::error_code error;
+  if (fs::exists(result, error)) {
+    fs::rename(result, previous, error);
+    if (error) {
+      throw InputError(fmt::format("{}: cannot be renamed to {}, {}", result.string(), previous.string(),
+                                   error.message()));
+    }
+  }
+}
+
+void run(RunArguments& arguments, const std::string& command_line) {
+  const fs::path result = arguments.output / "vibrations.h5";
+  if (!arguments.dry_run) {
+    std::error_code error;
+    fs::create_directories(arguments.output, error);
+    if (!fs::is_directory(arguments.output)) {
+      throw InputError(
+          fmt::format("{}: cannot be made a folder, {}", arguments.output.string(), error.message()));
+    }
+    set_aside(result);
+  }
+  const Site site = read_site(arguments.site);
+  const SurfaceLoads loads = read_surface_loads(arguments.loads);
+  arguments.options.half_model = !arguments.full_model;
+  WaveSolver solver = [&] {
+    try {
+      return make_solver(site, loads, arguments.options);
+    } catch (const ModelError& error) {  // site and loads do not fit: say which files
+      throw ModelError(
+          fmt::format("{}, {}: {}", arguments.site.string(), arguments.loads.string(), error.what()));
+    }
+  }();
+  print_run_summary(stdout, site, loads, solver);
+  if (arguments.dry_run) {
+    return;
+  }
+  const Vibrations vibrations = predict_vibrations(site, loads, solver);
+  write_vibrations(result, vibrations,
+                   {.program = "soil",
+                    .command = command_line,
+                    .convention = "SI units; x along the track, y to the left, z up; footprints downward"});
+  print_indicators(stdout, vibrations);
+  fmt::print("\n{}\n", result.string());
+}
+
+void add_report_command(CLI::App& app, fs::path& folder) {
+  CLI::App& command = *app.add_subcommand("report", "One page on the results in a folder");
+  command.footer(report_footer);
+  command.add_option("DIR", folder, "Folder of the results")->required();
+}
+
+void write_report(const fs::path& folder) {
+  write_prediction_report(folder, folder / "report.html");
+  fmt::print("{}\n", (folder / "report.html").string());
+}
+
+int run_program(int argc, char** argv) {
+  CLI::App app("Vibrations in the ground from loads on its surface.", "soil");
+  app.set_version_flag("--version", "soil " + results::library_version());
+  app.require_subcommand(1);
+  app.footer(
+      "\nExample:\n  soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output "
+      "results/tram\n\n"
+      "`soil run --help` says what the files hold.");
+  RunArguments arguments;
+  fs::path report_folder;
+  add_run_command(app, arguments);
+  add_report_command(app, report_folder);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  try {
+    if (app.got_subcommand("run")) {
+      run(arguments, results::join_command_line(argc, argv));
+    } else {
+      write_report(report_folder);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "soil: {}\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace
+}  // namespace easydyn::soil
+
+int main(int argc, char** argv) {
+  return easydyn::soil::run_program(argc, argv);
+}

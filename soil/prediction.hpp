@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdio>
+
+#include "soil/site.hpp"
+#include "soil/surface_loads.hpp"
+#include "soil/vibrations.hpp"
+#include "soil/wave_solver.hpp"
+
+namespace easydyn::soil {
+
+/// Solver of the waves that these loads send through the ground of this site. The loads are first limited to
+/// Site::highest_frequency (limit_band()): the mesh resolves nothing above it, and nothing above it is
+/// claimed.
+/// @throws ModelError if site, loads and options do not fit
+WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
+
+/// Runs the solver and draws up the indicators. Progress goes to `out` (nullptr: silent).
+/// @throws SolverError if the motion grows without bound
+Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
+                              std::FILE* out = stdout);
+
+/// Mesh, memory, steps and expected time, before a run.
+void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loads, WaveSolver& solver);
+
+/// PPV, KB_Fmax and VdB of every receiver as a table.
+void print_indicators(std::FILE* out, const Vibrations& vibrations);
+
+}  // namespace easydyn::soil

@@ -1,0 +1,203 @@
+// The program `soil` from outside: what it prints, writes and returns.
+
+#include <gmock/gmock.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+
+#include "soil/surface_loads.hpp"
+#include "soil/vibrations.hpp"
+#include "tests/temporary_folder.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using easydyn::testing::TemporaryFolder;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+// A ground that is cheap to compute: long waves, two receivers.
+const std::string tiny_site = R"(name = "tiny"
+[[layer]]
+name = "loam"
+thickness = 6
+density = 1800
+damping = 0.03
+cs = 200
+nu = 0.33
+[[layer]]
+density = 2000
+damping = 0.02
+cs = 300
+nu = 0.33
+[[receiver]]
+name = "10 m"
+distance = 10
+[[receiver]]
+name = "20 m"
+distance = 20
+[solver]
+highest_frequency = 10
+damping_frequency = 5
+[loads]
+taper_length = 0
+)";
+
+// One footprint that is pressed once, for 0.4 s.
+void write_tiny_loads(const std::filesystem::path& path) {
+  SurfaceLoads loads;
+  loads.time = Eigen::VectorXd::LinSpaced(201, 0, 1);
+  loads.footprints = {{0, 0, 2, 2.5}};
+  loads.force =
+      1e4 * (std::numbers::pi * ((loads.time.array() - 0.1) / 0.4).min(1).max(0)).sin().square().matrix();
+  write_surface_loads(path, loads, {.program = "test"});
+}
+
+struct Outcome {
+  int status = -1;
+  std::string out, err;
+};
+
+class SoilProgram : public ::testing::Test {
+ protected:
+  SoilProgram() { write_tiny_loads(folder_ / "loads.h5"); }
+
+  Outcome call(const std::string& arguments) {
+    const std::string out = (folder_ / "stdout").string(), err = (folder_ / "stderr").string();
+    const int status =
+        std::system((std::string(SOIL_PROGRAM) + " " + arguments + " >" + out + " 2>" + err).c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, testing::read_whole_file(out),
+            testing::read_whole_file(err)};
+  }
+
+  // `soil run` on a site file with this text.
+  Outcome run(const std::string& site, const std::string& options = "") {
+    folder_.write("site.toml", site);
+    return call("run " + (folder_ / "site.toml").string() + " " + (folder_ / "loads.h5").string() +
+                " --output " + (folder_ / "out").string() + " " + options);
+  }
+  Outcome run_replaced(const std::string& from, const std::string& to) {
+    std::string site = tiny_site;
+    const std::size_t at = site.find(from);
+    EXPECT_NE(at, std::string::npos);
+    return run(site.replace(at, from.size(), to));
+  }
+
+  bool has_result() const { return std::filesystem::exists(folder_ / "out/vibrations.h5"); }
+
+  void expect_refused(const Outcome& outcome, const std::string& message) {
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_THAT(outcome.err, AllOf(StartsWith("soil: "), HasSubstr(message)));
+    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1);  // one line
+    EXPECT_FALSE(has_result());
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(SoilProgram, ComputesVibrationsAndReportsThem) {
+  const Outcome outcome = run(tiny_site);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  for (const char* part : {"mesh ", "memory ", "steps ", "expected ", "waves: 50 %", "waves: done in", "10 m",
+                           "out/vibrations.h5"}) {
+    EXPECT_THAT(outcome.out, HasSubstr(part));
+  }
+
+  const Vibrations v = read_vibrations(folder_ / "out/vibrations.h5");
+  EXPECT_EQ(v.receivers.size(), 2u);
+  EXPECT_EQ(v.site_text, tiny_site);
+  EXPECT_EQ(v.highest_frequency, 10);
+  EXPECT_GT(v.indicators[0].ppv[2], v.indicators[1].ppv[2]);
+  EXPECT_GT(v.indicators[1].ppv[2], 0);
+  EXPECT_GT(v.footprint_displacement.maxCoeff(), 0);
+  const results::ResultReader reader(folder_ / "out/vibrations.h5");
+  EXPECT_EQ(reader.read_text_attribute("program"), "soil");
+  EXPECT_THAT(reader.read_text_attribute("command"), HasSubstr("site.toml"));
+
+  const Outcome report = call("report " + (folder_ / "out").string());
+  EXPECT_EQ(report.status, 0) << report.err;
+  EXPECT_THAT(testing::read_whole_file(folder_ / "out/report.html"), HasSubstr("</html>"));
+}
+
+TEST_F(SoilProgram, StopsBeforeTheRunWhenAsked) {
+  const Outcome outcome = run(tiny_site, "--dry-run");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("expected "));
+  EXPECT_FALSE(has_result());
+}
+
+TEST_F(SoilProgram, SetsAnEarlierResultAsideWhenItFails) {
+  std::filesystem::create_directory(folder_ / "out");
+  folder_.write("out/vibrations.h5", "earlier");
+  expect_refused(run(""), "no layer");
+  EXPECT_EQ(testing::read_whole_file(folder_ / "out/vibrations.previous.h5"), "earlier");
+}
+
+TEST_F(SoilProgram, RefusesAMissingFile) {
+  const std::string output = " --output " + (folder_ / "out").string();
+  expect_refused(call("run none.toml " + (folder_ / "loads.h5").string() + output),
+                 "none.toml: cannot be read");
+  folder_.write("site.toml", tiny_site);
+  expect_refused(call("run " + (folder_ / "site.toml").string() + " none.h5" + output),
+                 "none.h5: no such file");
+  folder_.write("text.h5", "not HDF5");
+  expect_refused(
+      call("run " + (folder_ / "site.toml").string() + " " + (folder_ / "text.h5").string() + output),
+      "text.h5: is not a readable HDF5 file");
+}
+
+TEST_F(SoilProgram, RefusesAWrongKey) {
+  expect_refused(run_replaced("thickness = 6", "thicknes = 6"),
+                 "site.toml:4:1: layer 1: unknown key \"thicknes\", did you mean \"thickness\"?");
+}
+
+TEST_F(SoilProgram, RefusesANegativeStiffness) {
+  expect_refused(run_replaced("cs = 200", "cs = -200"),
+                 "site.toml:7:6: layer \"loam\": cs = -200 m/s, must be > 0");
+  expect_refused(run_replaced("cs = 200", "E = -61e6"),
+                 "site.toml:7:5: layer \"loam\": E = -61000000 Pa, must be > 0");
+}
+
+TEST_F(SoilProgram, RefusesANumberThatIsNotFinite) {
+  expect_refused(run_replaced("density = 1800", "density = nan"),
+                 "site.toml:5:11: layer \"loam\": density = nan kg/m3, must be > 0");
+}
+
+TEST_F(SoilProgram, RefusesALayerOfZeroThickness) {
+  expect_refused(run_replaced("thickness = 6", "thickness = 0"),
+                 "site.toml:4:13: layer \"loam\": thickness = 0 m, must be > 0");
+}
+
+TEST_F(SoilProgram, RefusesAReceiverOutsideTheGround) {
+  expect_refused(run_replaced("distance = 20", "position = [0, 20, 1]"),
+                 "site.toml:19:12: receiver \"20 m\": z = 1 m, must be <= 0");
+}
+
+TEST_F(SoilProgram, RefusesAGroundThatNeedsMoreMemoryThanThereIs) {
+  expect_refused(run_replaced("highest_frequency = 10", "highest_frequency = 20000"), "site.toml");
+}
+
+TEST_F(SoilProgram, ReturnsTwoForWrongOptions) {
+  EXPECT_EQ(call("").status, 2);
+  EXPECT_EQ(call("run").status, 2);
+  EXPECT_EQ(call("walk").status, 2);
+  EXPECT_EQ(run(tiny_site, "--degree 12").status, 2);
+  EXPECT_EQ(run(tiny_site, "--colour").status, 2);
+  EXPECT_FALSE(has_result());
+}
+
+TEST_F(SoilProgram, ExplainsItself) {
+  const Outcome help = call("run --help");
+  EXPECT_EQ(help.status, 0);
+  for (const char* part : {"Example:", "SITE.toml", "SURFACE_LOADS.h5", "vibrations.h5", "--output"}) {
+    EXPECT_THAT(help.out, HasSubstr(part));
+  }
+  EXPECT_THAT(call("--version").out, StartsWith("soil 2."));
+}
+
+}  // namespace
+}  // namespace easydyn::soil
