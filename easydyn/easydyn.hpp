@@ -9,4 +9,5 @@
 #include "easydyn/sim/linearization.hpp"
 #include "easydyn/sim/modes.hpp"
 #include "easydyn/sim/newmark.hpp"
+#include "easydyn/sim/recorder.hpp"
 #include "easydyn/sim/static_equilibrium.hpp"

@@ -42,11 +42,27 @@ class StaticProblem {
   }
 
   int size() const { return n_ + n_ports_; }
+  int port_count() const { return n_ports_; }
 
+  // The guess, with port forces that hold the structures where the guess has them: bodies and structures then
+  // start in touch, however far the solution is.
   VectorXd initial() {
-    VectorXd z(size());
+    system_.evaluate(state_);
+    const std::vector<System::PortRecord> ports = system_.ports();
+    VectorXd z(size()), wanted(n_ports_);
     z.head(n_) = state_.q.head(n_);
-    for (int p = 0; p < n_ports_; ++p) z[n_ + p] = system_.ports()[static_cast<std::size_t>(p)].force;
+    Eigen::MatrixXd compliance(n_ports_, n_ports_);
+    const auto displacement = [&](int p, const VectorXd& F) {
+      const System::PortRecord& port = ports[static_cast<std::size_t>(p)];
+      return condensation_.motion(port.structure, port.shape, F).displacement;
+    };
+    const VectorXd none = VectorXd::Zero(n_ports_);
+    for (int p = 0; p < n_ports_; ++p) {
+      wanted[p] = ports[static_cast<std::size_t>(p)].motion.displacement - displacement(p, none);
+      for (int l = 0; l < n_ports_; ++l)
+        compliance(p, l) = displacement(p, VectorXd::Unit(n_ports_, l)) - displacement(p, none);
+    }
+    z.tail(n_ports_) = compliance.fullPivLu().solve(wanted);
     return z;
   }
 
@@ -152,7 +168,10 @@ void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, co
   k.z = N_VMake_Serial(n, z.data(), k.context);
   k.z_scale = N_VNew_Serial(n, k.context);
   k.r_scale = N_VNew_Serial(n, k.context);
-  N_VConst(1.0, k.z_scale);
+  // Coordinates count in m or rad, port forces against the reference force.
+  Eigen::Map<VectorXd> z_scale(N_VGetArrayPointer(k.z_scale), n);
+  z_scale.setOnes();
+  z_scale.tail(problem.port_count()).setConstant(1 / reference);
   N_VConst(1 / reference, k.r_scale);
   k.matrix = SUNDenseMatrix(n, n, k.context);
   k.linear = SUNLinSol_Dense(k.z, k.matrix, k.context);
@@ -164,6 +183,7 @@ void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, co
   KINSetNumMaxIters(k.memory, options.max_iterations);
   KINSetFuncNormTol(k.memory, options.tolerance);
   KINSetScaledStepTol(k.memory, 1e-15);
+  KINSetMaxNewtonStep(k.memory, 1e6);  // the default refuses to leave a guess at zero
   KINSetMaxSetupCalls(k.memory, 1);
   const int flag = KINSol(k.memory, k.z, KIN_LINESEARCH, k.z_scale, k.r_scale);
   if (problem.thrown) std::rethrow_exception(problem.thrown);
