@@ -1,0 +1,111 @@
+#include "soil/surface_interpolation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "soil/gll.hpp"
+
+namespace easydyn::soil {
+
+namespace {
+
+struct LineWeight {
+  int node;
+  double weight;
+};
+
+/// Integrals of the shape functions of a line of elements over [a, b].
+std::vector<LineWeight> integrate_line(const GllRule& rule, const std::vector<double>& lines, double a,
+                                       double b) {
+  std::vector<LineWeight> result;
+  for (std::size_t e = 0; e + 1 < lines.size(); ++e) {
+    const double low = std::max(a, lines[e]), high = std::min(b, lines[e + 1]);
+    if (!(low < high)) continue;
+    const double h = lines[e + 1] - lines[e];
+    const Eigen::VectorXd part =
+        h / 2 * rule.integrate_shape(2 * (low - lines[e]) / h - 1, 2 * (high - lines[e]) / h - 1);
+    for (int i = 0; i <= rule.degree; ++i) {
+      const int node = static_cast<int>(e) * rule.degree + i;
+      if (!result.empty() && result.back().node == node)
+        result.back().weight += part(i);
+      else
+        result.push_back({node, part(i)});
+    }
+  }
+  return result;
+}
+
+std::vector<LineWeight> interpolate_line(const GllRule& rule, const std::vector<double>& lines, double p) {
+  const auto above = std::upper_bound(lines.begin(), lines.end(), p);
+  const int e =
+      std::clamp(static_cast<int>(above - lines.begin()) - 1, 0, static_cast<int>(lines.size()) - 2);
+  const Eigen::VectorXd shape = rule.compute_shape(2 * (p - lines[e]) / (lines[e + 1] - lines[e]) - 1);
+  std::vector<LineWeight> result;
+  for (int i = 0; i <= rule.degree; ++i) result.push_back({e * rule.degree + i, shape(i)});
+  return result;
+}
+
+}  // namespace
+
+FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
+                                           std::size_t number) {
+  const double x0 = footprint.x - footprint.length / 2, x1 = footprint.x + footprint.length / 2;
+  double y0 = footprint.y - footprint.width / 2;
+  const double y1 = footprint.y + footprint.width / 2;
+  if (lattice.half_model) {
+    if (!(std::abs(footprint.y) < 1e-9))
+      throw ModelError(fmt::format("footprint {}: y = {} m, must be 0 in the half model (use the full model)",
+                                   number, footprint.y));
+    y0 = 0;
+  }
+  const auto check = [&](const char* axis, double low, double high, std::array<double, 2> range) {
+    if (!(low >= range[0] - 1e-9 && high <= range[1] + 1e-9))
+      throw ModelError(
+          fmt::format("footprint {}: {} = {:.6g}..{:.6g} m, must be in {:.6g}..{:.6g} m, the undamped ground",
+                      number, axis, low, high, range[0], range[1]));
+  };
+  check("x", x0, x1, lattice.interior_x());
+  check("y", y0, y1, lattice.interior_y());
+
+  const GllRule rule(lattice.degree);
+  const double area = footprint.length * footprint.width, part = (x1 - x0) * (y1 - y0);
+  const int top = lattice.nz() * lattice.degree;
+  FootprintWeights result;
+  for (const LineWeight& wy : integrate_line(rule, lattice.y, y0, y1))
+    for (const LineWeight& wx : integrate_line(rule, lattice.x, x0, x1)) {
+      result.force.push_back({wx.node, wy.node, top, wx.weight * wy.weight / area});
+      result.mean.push_back({wx.node, wy.node, top, wx.weight * wy.weight / part});
+    }
+  return result;
+}
+
+ReceiverWeights compute_receiver_weights(const Lattice& lattice, const Receiver& receiver) {
+  auto [x, y, z] = receiver.position;
+  ReceiverWeights result;
+  if (lattice.half_model && y < 0) {
+    y = -y;
+    result.mirrored = true;
+  }
+  const auto check = [&](const char* axis, double value, std::array<double, 2> range) {
+    if (!(value >= range[0] - 1e-9 && value <= range[1] + 1e-9))
+      throw ModelError(
+          fmt::format("receiver \"{}\": {} = {} m, must be in {:.6g}..{:.6g} m, the undamped ground",
+                      receiver.name, axis, value, range[0], range[1]));
+  };
+  check("x", x, lattice.interior_x());
+  check("y", y, lattice.interior_y());
+  check("z", z, lattice.interior_z());
+  const GllRule rule(lattice.degree);
+  for (const LineWeight& wz : interpolate_line(rule, lattice.z, z))
+    for (const LineWeight& wy : interpolate_line(rule, lattice.y, y))
+      for (const LineWeight& wx : interpolate_line(rule, lattice.x, x)) {
+        const double weight = wx.weight * wy.weight * wz.weight;
+        if (std::abs(weight) > 1e-14) result.nodes.push_back({wx.node, wy.node, wz.node, weight});
+      }
+  return result;
+}
+
+}  // namespace easydyn::soil

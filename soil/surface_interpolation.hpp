@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "soil/lattice.hpp"
+
+namespace easydyn::soil {
+
+/// A weight on one node of the lattice.
+struct NodeWeight {
+  int X = 0, Y = 0, Z = 0;
+  double weight = 0;
+};
+
+/// Uniform unit force over a footprint, integrated exactly with the shape functions: the nodal forces, which
+/// are at once the weights of the mean displacement over the footprint. In the half model the part y >= 0
+/// only; the nodal forces then add up to 1/2 (`force`) and the mean weights to 1 (`mean`).
+struct FootprintWeights {
+  std::vector<NodeWeight> force, mean;
+};
+
+/// @throws ModelError if the footprint leaves the undamped ground, naming it and the accepted range
+FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
+                                           std::size_t number);
+
+/// Shape functions at a receiver: weights that add up to 1. In the half model a receiver at y < 0 takes the
+/// values of its mirror image (`mirrored`: v_y changes sign).
+struct ReceiverWeights {
+  std::vector<NodeWeight> nodes;
+  bool mirrored = false;
+};
+
+/// @throws ModelError if the receiver lies outside the undamped ground, naming it and the accepted range
+ReceiverWeights compute_receiver_weights(const Lattice& lattice, const Receiver& receiver);
+
+}  // namespace easydyn::soil

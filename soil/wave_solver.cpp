@@ -1,0 +1,286 @@
+#include "soil/wave_solver.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+#include <variant>
+
+#include "easydyn/error.hpp"
+#include "soil/load_history.hpp"
+#include "soil/relaxation.hpp"
+#include "soil/surface_interpolation.hpp"
+#include "soil/wave_engine.hpp"
+
+namespace easydyn::soil {
+
+namespace {
+
+constexpr int mechanisms = 3;
+
+void check_options(const SolverOptions& options) {
+  const auto require = [](bool condition, const std::string& message) {
+    if (!condition) throw ModelError("solver: " + message);
+  };
+  require(options.step_safety > 0 && options.step_safety <= 1,
+          fmt::format("step_safety = {}, must be in 0..1", options.step_safety));
+  require(options.threads >= 0, fmt::format("threads = {}, must be >= 0 (0: all cores)", options.threads));
+  require(options.output_step >= 0, fmt::format("output_step = {} s, must be >= 0", options.output_step));
+  require(options.sponge_damping >= 0 && std::isfinite(options.sponge_damping),
+          fmt::format("sponge_damping = {} 1/s, must be >= 0", options.sponge_damping));
+  require(options.memory_limit >= 0,
+          fmt::format("memory_limit = {} byte, must be >= 0", options.memory_limit));
+}
+
+struct Rheology {
+  std::vector<EngineMaterial> materials;
+  std::vector<double> rates;
+};
+
+Rheology make_rheology(const Site& site, DampingModel model) {
+  Rheology rheology;
+  const bool damped =
+      std::any_of(site.layers.begin(), site.layers.end(), [](const Layer& l) { return l.damping > 0; });
+  const double highest = site.highest_frequency;
+  for (const Layer& layer : site.layers) {
+    EngineMaterial material{layer.lame_lambda(), layer.shear_modulus(), layer.density, 0, {}};
+    if (damped && model == DampingModel::stiffness_proportional)
+      material.beta = layer.damping / (M_PI * site.damping_frequency);
+    if (damped && model == DampingModel::constant_ratio) {
+      const Relaxation body =
+          fit_relaxation(layer.damping, highest / 25, 1.25 * highest, site.damping_frequency, mechanisms);
+      material.lambda *= body.unrelaxed;
+      material.mu *= body.unrelaxed;
+      material.memory_weights.assign(body.weights.data(), body.weights.data() + mechanisms);
+      rheology.rates.assign(body.rates.data(), body.rates.data() + mechanisms);
+    }
+    rheology.materials.push_back(material);
+  }
+  return rheology;
+}
+
+double physical_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+struct WaveSolver::Impl {
+  Impl(const Site& site_, const SurfaceLoads& loads, const SolverOptions& options_);
+
+  void update_surface_forces(double t);
+  template <class Read>
+  double weigh(const std::vector<NodeWeight>& nodes, Read read) const {
+    double sum = 0;
+    for (const NodeWeight& n : nodes) sum += n.weight * read(n);
+    return sum;
+  }
+  template <class F>
+  decltype(auto) with_engine(F&& f) {
+    return double_engine ? f(*double_engine) : f(*float_engine);
+  }
+  template <class T>
+  GroundMotion run(WaveEngine<T>& engine, const std::function<void(double)>& progress);
+
+  Site site;
+  SolverOptions options;
+  Lattice lattice;
+  LoadHistory history;
+  std::vector<FootprintWeights> footprints;
+  std::vector<ReceiverWeights> receivers;
+  Eigen::VectorXd taper, forces;
+  std::vector<SurfaceNodeForce> node_forces;
+  std::unique_ptr<WaveEngine<float>> float_engine;
+  std::unique_ptr<WaveEngine<double>> double_engine;
+  double dt = 0, output_step = 0, memory = 0;
+  long steps_per_output = 1, outputs = 0, preload_outputs = 0;
+  double seconds_per_step = 0;
+
+  long steps() const { return (preload_outputs + outputs - 1) * steps_per_output + 1; }
+};
+
+WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const SolverOptions& options_)
+    : site(site_), options(options_), history(loads, options_.preload_time) {
+  check_options(options);
+  LatticeOptions lattice_options;
+  lattice_options.degree = options.degree;
+  lattice_options.half_model = options.half_model;
+  lattice_options.sponge_elements = options.sponge_elements;
+  lattice_options.sponge_growth = options.sponge_growth;
+  lattice = make_lattice(site, loads.footprints, lattice_options);
+  for (std::size_t f = 0; f < loads.footprints.size(); ++f)
+    footprints.push_back(compute_footprint_weights(lattice, loads.footprints[f], f + 1));
+  for (const Receiver& receiver : site.receivers)
+    receivers.push_back(compute_receiver_weights(lattice, receiver));
+  taper = compute_taper(loads.footprints, site.taper_length);
+
+  const Rheology rheology = make_rheology(site, options.damping);
+  const int memories = static_cast<int>(rheology.rates.size());
+  memory = options.double_precision ? WaveEngine<double>::compute_memory(lattice, memories)
+                                    : WaveEngine<float>::compute_memory(lattice, memories);
+  const double limit = options.memory_limit > 0 ? options.memory_limit : 0.8 * physical_memory();
+  if (!(memory <= limit))
+    throw ModelError(
+        fmt::format("solver: {:.3g} million degrees of freedom need {:.3g} GB of memory, must be at most "
+                    "{:.3g} GB: lower highest_frequency, points_per_wavelength or margin",
+                    static_cast<double>(lattice.dofs()) * 1e-6, memory * 1e-9, limit * 1e-9));
+
+  EngineBoundary boundary;
+  boundary.sponge_damping = options.sponge_damping;
+  boundary.dashpots = options.dashpots;
+  for (const Footprint& f : loads.footprints) {
+    boundary.origin[0] += f.x / static_cast<double>(loads.footprints.size());
+    boundary.origin[1] += f.y / static_cast<double>(loads.footprints.size());
+  }
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int threads = options.threads > 0 ? options.threads : cores;
+  if (options.double_precision)
+    double_engine =
+        std::make_unique<WaveEngine<double>>(lattice, rheology.materials, rheology.rates, boundary, threads);
+  else
+    float_engine =
+        std::make_unique<WaveEngine<float>>(lattice, rheology.materials, rheology.rates, boundary, threads);
+
+  // The output step is a whole number of time steps.
+  const double largest =
+      with_engine([&](auto& engine) { return options.step_safety * engine.compute_stable_step(); });
+  if (!(largest > 0) || !std::isfinite(largest))
+    throw SolverError(fmt::format("wave solver: no stable time step found (limit {} s)", largest));
+  output_step = options.output_step > 0 ? options.output_step : 1 / (10 * site.highest_frequency);
+  steps_per_output = static_cast<long>(std::ceil(output_step / largest));
+  dt = output_step / static_cast<double>(steps_per_output);
+  with_engine([&](auto& engine) { engine.set_time_step(dt); });
+
+  const double duration =
+      site.duration > 0 ? site.duration : history.last_time() - history.first_time() + site.decay_time;
+  if (!(duration > 0) || !std::isfinite(duration))
+    throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration));
+  outputs = static_cast<long>(std::floor(duration / output_step + 1e-9)) + 1;
+  Eigen::VectorXd start;
+  history.update_forces(history.first_time() + 1e-12 * output_step, start);
+  const bool preloaded = start.cwiseProduct(taper).cwiseAbs().maxCoeff() > 0;
+  preload_outputs = preloaded ? static_cast<long>(std::ceil(options.preload_time / output_step)) : 0;
+}
+
+void WaveSolver::Impl::update_surface_forces(double t) {
+  history.update_forces(t, forces);
+  node_forces.clear();
+  for (std::size_t f = 0; f < footprints.size(); ++f) {
+    const double force = forces(static_cast<Eigen::Index>(f)) * taper(static_cast<Eigen::Index>(f));
+    if (force == 0) continue;
+    for (const NodeWeight& n : footprints[f].force) node_forces.push_back({n.X, n.Y, -force * n.weight});
+  }
+}
+
+template <class T>
+GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const std::function<void(double)>& progress) {
+  engine.set_to_rest();
+  const Eigen::Index nt = outputs, nr = static_cast<Eigen::Index>(receivers.size()),
+                     nl = static_cast<Eigen::Index>(footprints.size());
+  GroundMotion motion;
+  motion.taper = taper;
+  motion.time.resize(nt);
+  motion.energy.resize(nt);
+  Eigen::MatrixXd* const velocity[3] = {&motion.vx, &motion.vy, &motion.vz};
+  for (Eigen::MatrixXd* v : velocity) *v = Eigen::MatrixXd::Zero(nt, nr);
+  motion.footprint_displacement.resize(nt, nl);
+
+  const double t0 = history.first_time() - static_cast<double>(preload_outputs) * output_step;
+  const long total = steps();
+  auto told = std::chrono::steady_clock::now();
+  // Velocity at an output time: mean of the half steps before and after it.
+  const auto add_velocities = [&](Eigen::Index row) {
+    for (Eigen::Index r = 0; r < nr; ++r) {
+      const ReceiverWeights& receiver = receivers[static_cast<std::size_t>(r)];
+      for (int c = 0; c < 3; ++c) {
+        const double sign = c == 1 && receiver.mirrored ? -1 : 1;
+        (*velocity[c])(row, r) += 0.5 * sign * weigh(receiver.nodes, [&](const NodeWeight& n) {
+                                    return engine.velocity(c, n.X, n.Y, n.Z);
+                                  });
+      }
+    }
+  };
+  for (long step = 0; step < total; ++step) {
+    const bool output = step % steps_per_output == 0;
+    const Eigen::Index row = output ? step / steps_per_output - preload_outputs : -1;
+    const double t = t0 + static_cast<double>(step) * dt;
+    if (row >= 0) {
+      motion.time(row) = t;
+      add_velocities(row);
+      for (Eigen::Index f = 0; f < nl; ++f)
+        motion.footprint_displacement(row, f) =
+            -weigh(footprints[static_cast<std::size_t>(f)].mean,
+                   [&](const NodeWeight& n) { return engine.displacement(2, n.X, n.Y, n.Z); });
+    }
+    update_surface_forces(t);
+    engine.advance(node_forces, output);
+    if (output && !std::isfinite(engine.energy()))
+      throw SolverError(
+          fmt::format("wave solver: the motion is no longer finite at t = {:.6g} s, step {} of {} (dt = "
+                      "{:.4g} s): lower step_safety (now {}) or use double_precision",
+                      t, step, total, dt, options.step_safety));
+    if (row >= 0) {
+      motion.energy(row) = engine.energy();
+      add_velocities(row);
+    }
+    if (progress && (seconds_since(told) > 0.25 || step + 1 == total)) {
+      told = std::chrono::steady_clock::now();
+      progress(static_cast<double>(step + 1) / static_cast<double>(total));
+    }
+  }
+  return motion;
+}
+
+WaveSolver::WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options)
+    : impl_(std::make_unique<Impl>(site, loads, options)) {}
+WaveSolver::~WaveSolver() = default;
+WaveSolver::WaveSolver(WaveSolver&&) noexcept = default;
+WaveSolver& WaveSolver::operator=(WaveSolver&&) noexcept = default;
+
+const Lattice& WaveSolver::lattice() const {
+  return impl_->lattice;
+}
+double WaveSolver::time_step() const {
+  return impl_->dt;
+}
+long WaveSolver::steps() const {
+  return impl_->steps();
+}
+
+RunSummary WaveSolver::compute_summary() {
+  Impl& impl = *impl_;
+  if (impl.seconds_per_step == 0)
+    impl.with_engine([&](auto& engine) {
+      impl.update_surface_forces(impl.history.first_time());
+      engine.set_to_rest();
+      engine.advance(impl.node_forces, false);
+      const auto start = std::chrono::steady_clock::now();
+      int count = 0;
+      for (; count < 5 || (seconds_since(start) < 0.3 && count < 1000); ++count)
+        engine.advance(impl.node_forces, false);
+      impl.seconds_per_step = seconds_since(start) / count;
+      engine.set_to_rest();
+    });
+  RunSummary summary;
+  summary.elements = impl.lattice.elements();
+  summary.nodes = impl.lattice.nodes();
+  summary.dofs = impl.lattice.dofs();
+  summary.memory = impl.memory;
+  summary.time_step = impl.dt;
+  summary.steps = impl.steps();
+  summary.expected_time = impl.seconds_per_step * static_cast<double>(summary.steps);
+  return summary;
+}
+
+GroundMotion WaveSolver::run(const std::function<void(double)>& progress) {
+  return impl_->with_engine([&](auto& engine) { return impl_->run(engine, progress); });
+}
+
+}  // namespace easydyn::soil
