@@ -33,7 +33,7 @@ PlanarVehicle::PlanarVehicle(System& system, RailVehicle data)
     for (std::size_t w = 0; w < gear.wheel_pairs.size(); ++w) {
       const WheelPair& pair = gear.wheel_pairs[w];
       const WheelPairLoad& load = loads_.wheel_pairs[g][w];
-      const std::string name = gear.name + ", " + pair.name;
+      const std::string name = pair.name;
       const double tyre_mass = pair.resilient ? double(pair.resilient->tyre_mass) : 0.0;
       Body& hub = system.body(name + (pair.resilient ? ", hub" : ""), Inertia(pair.mass - tyre_mass));
       WheelPairMotion wheel{

@@ -28,7 +28,7 @@ class PlanarVehicle {
  public:
   /// One wheel pair where it meets the rail.
   struct Wheel {
-    std::string name;    ///< "gear, wheel pair"
+    std::string name;    ///< of the wheel pair
     Body* body;          ///< runs on the rail: the tyre, or the hub of a solid wheel
     double x;            ///< from the vehicle's origin [m]
     double radius;       ///< [m]

@@ -64,8 +64,8 @@ void add_vehicle(visu::Scene& scene, const RailVehicle& vehicle, const VehicleMo
                              .colour = "#228833"});
     }
     for (const WheelPair& pair : gear.wheel_pairs) {
-      const std::string hub = gear.name + ", " + pair.name + (pair.resilient ? ", hub" : "");
-      const std::string rolling = pair.resilient ? gear.name + ", " + pair.name + ", tyre" : hub;
+      const std::string hub = pair.name + (pair.resilient ? ", hub" : "");
+      const std::string rolling = pair.resilient ? pair.name + ", tyre" : hub;
       add_frame(scene, motion, rolling, pair.x, heights.rail + pair.radius);
       if (pair.resilient) add_frame(scene, motion, hub, pair.x, heights.rail + pair.radius);
       for (double side : {-0.5, 0.5})
