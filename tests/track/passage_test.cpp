@@ -83,7 +83,7 @@ Passage roll(const Foundation& foundation, double step, std::shared_ptr<const Pr
 TEST(Passage, BeginsWithoutATransient) {
   // On a perfect rail the force varies with the sleepers only. The quasi-static start leaves out the dynamic part
   // of that variation, so the first bays may vary by a little more than later ones: 0.2 % of the load (measured
-  // 0.17 %). From a standstill (zero rates) it would be 40 times as much.
+  // 0.17 %).
   for (const Foundation& foundation : all_foundations) {
     const Passage p = roll(foundation, 2e-4, std::make_shared<FlatProfile>());
     const auto range = [&](Eigen::Index begin) {
