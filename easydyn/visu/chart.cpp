@@ -39,6 +39,7 @@ Value to_value(const Axis& axis) {
       {"label", axis.label}, {"unit", axis.unit}, {"log", axis.scale == Scale::logarithmic}};
   if (axis.min) object.emplace_back("min", *axis.min);
   if (axis.max) object.emplace_back("max", *axis.max);
+  if (!axis.ticks.empty()) object.emplace_back("ticks", Value::Array(axis.ticks.begin(), axis.ticks.end()));
   return object;
 }
 

@@ -33,6 +33,7 @@ struct Axis {
   std::string unit;   ///< e.g. "s"; empty: a pure number
   Scale scale = Scale::linear;
   std::optional<double> min = {}, max = {};  ///< empty: from the data
+  std::vector<double> ticks = {};            ///< where to put numbers; empty: chosen by the page
 };
 
 /// A diagram: axes with units, legend, zoom by dragging, read-out under the cursor.

@@ -131,7 +131,7 @@ class Page {
 
   void add_parameters(const std::vector<Parameter>& parameters) {
     html_ +=
-        "<div class=\"scroll\"><table class=\"data\"><thead><tr><th>Parameter</th><th "
+        "<div class=\"scroll\"><table class=\"data parameters\"><thead><tr><th>Parameter</th><th "
         "class=\"right\">Value</th>"
         "<th>Unit</th><th>Source</th></tr></thead><tbody>\n";
     const std::string* group = nullptr;

@@ -68,8 +68,9 @@ void add_velocities(visu::Report& report, const ResultReader& ground, const Rece
                     {"x, along the track", time, x.col(i)},
                     {"y, across", time, y.col(i)}},
          .caption = fmt::format("At x = {} m, y = {} m, z = {} m; the scales differ between receivers.",
-                                number_text(receivers.position(i, 0)), number_text(receivers.position(i, 1)),
-                                number_text(receivers.position(i, 2))),
+                                visu::short_number_text(receivers.position(i, 0)),
+                                visu::short_number_text(receivers.position(i, 1)),
+                                visu::short_number_text(receivers.position(i, 2))),
          .height = 230});
   report.add_charts(std::move(charts));
   const std::string remark = remark_on_choice(receivers, shown.size());
@@ -82,11 +83,18 @@ double level(double velocity) {
 }
 
 void add_spectra(visu::Report& report, const ResultReader& ground, const Receivers& receivers) {
-  const VectorXd centre = ground.read_vector("/third_octave/centre");
-  const MatrixXd rms = ground.read_matrix("/third_octave/rms");
+  VectorXd centre = ground.read_vector("/third_octave/centre");
+  MatrixXd rms = ground.read_matrix("/third_octave/rms");
+  Index known = centre.size();  // bands above the highest frequency are left out
+  while (known > 1 && rms.col(known - 1).array().isNaN().all()) --known;
+  centre.conservativeResize(known);
+  rms.conservativeResize(rms.rows(), known);
   report.add_subsection("One-third octave spectra");
   visu::Chart chart{.title = "Vertical velocity in one-third octave bands",
-                    .x = {"one-third octave band centre", "Hz", visu::Scale::logarithmic},
+                    .x = {.label = "one-third octave band centre",
+                          .unit = "Hz",
+                          .scale = visu::Scale::logarithmic,
+                          .ticks = {1, 2, 4, 8, 16, 31.5, 63}},
                     .y = {"velocity level", "dB re 5·10\u207b\u2078 m/s"},
                     .series = {},
                     .height = 340};
@@ -98,7 +106,7 @@ void add_spectra(visu::Report& report, const ResultReader& ground, const Receive
       "Rms of v_z over the whole record in each band, as a level re 5·10\u207b\u2078 m/s. Bands above {} Hz "
       "are not "
       "computed and left out.{}",
-      number_text(ground.read_number_attribute("highest_frequency")),
+      visu::short_number_text(ground.read_number_attribute("highest_frequency")),
       remark_on_choice(receivers, shown.size()));
   report.add_chart(std::move(chart));
 }
@@ -135,7 +143,7 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
   const VectorXd kb = ground.read_vector("/indicators/kb_f_max"), vdb = ground.read_vector("/indicators/vdb");
   const VectorXd centre = ground.read_vector("/third_octave/centre");
   const MatrixXd rms = ground.read_matrix("/third_octave/rms");
-  const std::string highest = number_text(ground.read_number_attribute("highest_frequency"));
+  const std::string highest = visu::short_number_text(ground.read_number_attribute("highest_frequency"));
   report.add_subsection("Indicators");
   visu::Table table{{"receiver", "distance [m]", "PPV x [mm/s]", "PPV y [mm/s]", "PPV z [mm/s]",
                      "PPV resultant [mm/s]", "KB_Fmax", "VdB [dB re 1e-6 in/s]", "strongest band [Hz]"},
@@ -144,7 +152,7 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
   for (const Index i : receivers.near) {
     Index strongest = 0;
     rms.row(i).unaryExpr([](double v) { return std::isnan(v) ? -1.0 : v; }).maxCoeff(&strongest);
-    table.rows.push_back({receivers.label(i), number_text(receivers.distance(i)),
+    table.rows.push_back({receivers.label(i), visu::short_number_text(receivers.distance(i), 4),
                           number_text(1e3 * ppv(i, 0)), number_text(1e3 * ppv(i, 1)),
                           number_text(1e3 * ppv(i, 2)), number_text(1e3 * ppv(i, 3)), number_text(kb(i)),
                           fmt::format("{:.1f}", vdb(i)), number_text(centre(strongest))});
@@ -191,7 +199,7 @@ std::vector<visu::KeyFigure> ground_key_figures(const ResultReader& ground) {
   const MatrixXd ppv = ground.read_matrix("/indicators/ppv");
   const VectorXd kb = ground.read_vector("/indicators/kb_f_max");
   const std::string band =
-      fmt::format("up to {} Hz", number_text(ground.read_number_attribute("highest_frequency")));
+      fmt::format("up to {} Hz", visu::short_number_text(ground.read_number_attribute("highest_frequency")));
   std::vector<visu::KeyFigure> figures;
   const auto add = [&](Index i) {
     figures.push_back({fmt::format("PPV at {}", receivers.label(i)), number_text(1e3 * ppv(i, 3)), "mm/s",

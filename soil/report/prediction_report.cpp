@@ -21,7 +21,7 @@ std::string text_of(const json::Value& value) {
   try {
     return value.string();
   } catch (const Error&) {
-    return report::number_text(value.number(), 4);
+    return visu::short_number_text(value.number(), 4);
   }
 }
 
@@ -42,12 +42,14 @@ void for_each_object(const ResultReader& file, const std::string& dataset, Use u
   }
 }
 
-void add_origin(visu::Report& report, const char* step, const ResultReader& file) {
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+Facts origin(const std::string& step, const ResultReader& file) {
   const auto text = [&](const char* name) { return file.read_text_attribute(name); };
-  report.add_facts({{step, fmt::format("{} {}, {}", text("program"), text("version"), text("created"))},
-                    {"Command", fmt::format("`{}`", text("command"))},
-                    {"Convention", text("convention")},
-                    {"File", file.path().filename().string()}});
+  return {{step, fmt::format("{} {}, {}, in `{}`", text("program"), text("version"), text("created"),
+                             file.path().filename().string())},
+          {"Command", fmt::format("`{}`", text("command"))},
+          {"Convention", text("convention")}};
 }
 
 std::vector<visu::KeyFigure> key_figures(const ResultReader* track, const ResultReader* ground,
@@ -104,8 +106,9 @@ void add_limits(visu::Report& report, const ResultReader* track, const ResultRea
         "frequency that depends on the site; the recoupling error says how well in this run.");
   }
   if (ground) {
-    limits.push_back(fmt::format("Nothing is claimed above {} Hz: the mesh of the soil does not resolve it.",
-                                 report::number_text(ground->read_number_attribute("highest_frequency"))));
+    limits.push_back(
+        fmt::format("Nothing is claimed above {} Hz: the mesh of the soil does not resolve it.",
+                    visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
     limits.push_back(
         "The ground consists of horizontal, homogeneous, linear, isotropic layers; material damping is that "
         "of the "
@@ -139,12 +142,16 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
   const auto comparison =
       track && ground ? report::compare_displacements(*track, *ground) : std::optional<report::Comparison>();
 
-  visu::Report report(!ground  ? "Passage over the track"
-                      : !track ? "Ground vibration: prediction"
-                               : "Railway ground vibration: prediction",
-                      results_dir.filename().string());
-  if (track) add_origin(report, "Step 1, vehicle and track", *track);
-  if (ground) add_origin(report, "Step 2, ground", *ground);
+  visu::Report report(
+      !ground  ? "Passage over the track"
+      : !track ? "Ground vibration: prediction"
+               : "Railway ground vibration: prediction",
+      "Results in " + std::filesystem::absolute(results_dir / "x").parent_path().filename().string());
+  Facts facts;
+  if (track) facts = origin("Step 1, vehicle and track", *track);
+  if (ground)
+    for (auto& fact : origin("Step 2, ground", *ground)) facts.push_back(std::move(fact));
+  report.add_facts(std::move(facts));
 
   report.add_section("Key figures");
   const auto figures = key_figures(track, ground, comparison);
@@ -152,7 +159,7 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
   if (ground)
     report.add_note(fmt::format(
         "Free-field prediction, band-limited to {} Hz. Absolute levels are no better than about 10 dB.",
-        report::number_text(ground->read_number_attribute("highest_frequency"))));
+        visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
   if (track) {
     add_animation(report, *track);
     report::add_track_section(report, *track);

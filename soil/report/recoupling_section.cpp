@@ -76,27 +76,30 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
         {"quasi-static, below 2 Hz", percent(c.error.quasi_static.l2), percent(c.error.quasi_static.peak)},
         {"dynamic, above 2 Hz", percent(c.error.dynamic.l2), percent(c.error.dynamic.peak)}},
        fmt::format("Recoupling error over {} sleepers under their full load, from t = {} s to {} s",
-                   c.error.footprints, number_text(c.error.from), number_text(c.error.to))});
+                   c.error.footprints, visu::short_number_text(c.error.from),
+                   visu::short_number_text(c.error.to))});
   report.add_paragraph(
       "Relative to the displacement of the soil. The quasi-static part depends on how far away the soil "
       "model "
-      "ends: a box of finite elements on a fixed boundary is stiffer than the ground.");
+      "ends: a box of finite elements on a fixed boundary is stiffer than the ground. Downward is positive "
+      "in the figures.");
 
-  // sleepers at a quarter, the middle and three quarters of those under their full load
+  // four sleepers, evenly spread over those under their full load
   std::vector<Index> full;
   for (Index j = 0; j < c.taper.size(); ++j)
     if (c.taper(j) >= 1 - 1e-9) full.push_back(j);
   std::vector<visu::Chart> charts;
-  for (const Index k : spread(Index(full.size()) + 2, 5)) {  // the two ends drop out
-    if (k == 0 || k == Index(full.size()) + 1 || charts.size() == 3) continue;
+  for (const Index k : spread(Index(full.size()) + 2, 6)) {  // the two ends drop out
+    if (k == 0 || k == Index(full.size()) + 1 || charts.size() == 4) continue;
     const Index j = full[size_t(k - 1)];
-    charts.push_back({.title = fmt::format("Under the sleeper at x = {} m", number_text(c.x(j))),
-                      .x = {"time", "s"},
-                      .y = {"downward displacement", "mm"},
-                      .series = {{"soil, mean over the footprint (step 2)", c.soil_time, 1e3 * c.soil.col(j)},
-                                 {"foundation u_f (step 1)", c.track_time, 1e3 * c.foundation.col(j),
-                                  visu::Stroke::dashed}},
-                      .height = 230});
+    charts.push_back(
+        {.title = fmt::format("Under the sleeper at x = {} m", visu::short_number_text(c.x(j), 4)),
+         .x = {"time", "s"},
+         .y = {"displacement", "mm"},
+         .series = {{"soil, mean over the footprint (step 2)", c.soil_time, 1e3 * c.soil.col(j)},
+                    {"foundation u_f (step 1)", c.track_time, 1e3 * c.foundation.col(j),
+                     visu::Stroke::dashed}},
+         .height = 230});
   }
   report.add_charts(std::move(charts));
 }

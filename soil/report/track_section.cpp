@@ -75,17 +75,19 @@ void add_deflections(visu::Report& report, const ResultReader& track, const Vect
       {"/sleeper/displacement", "sleeper"}, {"/foundation/displacement", "foundation (u_f of the CLM)"}};
   Index row = 0;
   rail.col(at).maxCoeff(&row);
-  visu::Chart history{
-      .title = fmt::format("At the sleeper at x = {} m, during the passage", number_text(sleepers(at))),
-      .x = {"time", "s"},
-      .y = {"downward displacement", "mm"},
-      .series = {{"rail", time, rail.col(at)}},
-      .caption = "Of the sleepers in the middle half of the track, the one where the rail moves most."};
+  visu::Chart history{.title = fmt::format("At the sleeper at x = {} m, during the passage",
+                                           visu::short_number_text(sleepers(at), 4)),
+                      .x = {"time", "s"},
+                      .y = {"displacement", "mm"},
+                      .series = {{"rail", time, rail.col(at)}},
+                      .caption =
+                          "Downward is positive. Of the sleepers in the middle half of the track, the one "
+                          "where the rail moves most."};
   visu::Chart shape{.title = fmt::format("Along the track at t = {} s", number_text(time(row), 4)),
                     .x = {"x", "m"},
-                    .y = {"downward displacement", "mm"},
+                    .y = {"displacement", "mm"},
                     .series = {{"rail", sleepers, rail.row(row)}},
-                    .caption = "When the rail is lowest at that sleeper."};
+                    .caption = "Downward is positive; when the rail is lowest at that sleeper."};
   for (const auto& [dataset, name] : parts) {
     if (!track.has(dataset)) continue;
     const MatrixXd values = 1e3 * track.read_matrix(dataset);
@@ -113,7 +115,8 @@ void add_ballast_reactions(visu::Report& report, const ResultReader& track, cons
   std::vector<Index> chosen = {std::max<Index>(0, middle - n / 5), middle, std::min(n - 1, middle + n / 5)};
   chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
   for (const Index s : chosen)
-    history.series.push_back({fmt::format("x = {} m", number_text(sleepers(s))), time, reaction.col(s)});
+    history.series.push_back(
+        {fmt::format("x = {} m", visu::short_number_text(sleepers(s), 4)), time, reaction.col(s)});
   visu::Chart envelope{.title = "Largest and smallest reaction of every sleeper",
                        .x = {"x", "m"},
                        .y = {"reaction", "kN"},

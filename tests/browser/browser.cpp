@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
-#include <regex>
 #include <set>
+#include <sstream>
 
 #include "tests/temporary_folder.hpp"
 
@@ -35,7 +36,9 @@ Visit visit(const fs::path& page, const fs::path& folder, const std::string& opt
   EXPECT_EQ(status, 0) << command << "\n" << read_whole_file(folder / "log.txt");
 
   Visit out;
-  out.dom = read_whole_file(folder / "dom.html");
+  const std::string dom = read_whole_file(folder / "dom.html");
+  out.root = dom.substr(dom.find("<html"), dom.find('>', dom.find("<html")) + 1 - dom.find("<html"));
+  out.body = dom.substr(std::min(dom.size(), dom.find("<body")), dom.find("<script") - dom.find("<body"));
   const std::string log = read_whole_file(folder / "log.txt"), net = read_whole_file(folder / "net.json");
   EXPECT_NE(net.find("\"events\""), net.npos) << "no net log";
 
@@ -43,11 +46,17 @@ Visit visit(const fs::path& page, const fs::path& folder, const std::string& opt
   for (std::string line; std::getline(lines, line);)
     if (line.find("CONSOLE") != line.npos) out.console.push_back(line);
 
+  // one event per line; the browser's own calls home do not bear the page's isolation key
   std::set<std::string> requests;
   const std::string own = "file://" + page.string();
-  const std::regex address(R"re("(?:url|host)":"([^"]*)")re");
-  for (auto it = std::sregex_iterator(net.begin(), net.end(), address); it != std::sregex_iterator(); ++it)
-    if (const std::string url = (*it)[1]; url != own && url.rfind("data:", 0) != 0) requests.insert(url);
+  std::istringstream events(net);
+  for (std::string event; std::getline(events, event);) {
+    if (event.find("\"network_isolation_key\":\"file://") == event.npos) continue;
+    const size_t start = event.rfind("\"url\":\"");
+    if (start == event.npos) continue;
+    const std::string url = event.substr(start + 7, event.find('"', start + 7) - start - 7);
+    if (url != own && url.rfind("data:", 0) != 0) requests.insert(url);
+  }
   out.requests.assign(requests.begin(), requests.end());
   return out;
 }

@@ -8,9 +8,10 @@ namespace easydyn::testing {
 
 /// What headless Chromium made of a page.
 struct Visit {
-  std::string dom;                    ///< the document after its scripts have run
+  std::string root;                   ///< the <html> tag after the scripts have run
+  std::string body;                   ///< the document after that, up to its first script
   std::vector<std::string> console;   ///< messages of the page
-  std::vector<std::string> requests;  ///< addresses asked for, other than the page itself and data:
+  std::vector<std::string> requests;  ///< addresses the page asked for, other than itself and data:
 };
 
 bool has_browser();

@@ -28,8 +28,8 @@ class Browser : public ::testing::Test {
 };
 
 void expect_complete(const Visit& seen) {
-  EXPECT_THAT(seen.dom, HasSubstr("data-ready=\"true\""));
-  EXPECT_THAT(seen.dom, Not(HasSubstr("data-failure")));
+  EXPECT_THAT(seen.root, HasSubstr("data-ready=\"true\""));
+  EXPECT_THAT(seen.root, Not(HasSubstr("data-failure")));
   EXPECT_THAT(seen.console, IsEmpty());
   EXPECT_THAT(seen.requests, IsEmpty());
 }
@@ -87,24 +87,24 @@ TEST_F(Browser, DrawsThePredictionReportAndAsksForNothing) {
   EXPECT_LT(std::filesystem::file_size(folder_ / "report.html"), 5'000'000u);
   const Visit seen = visit(folder_ / "report.html", folder_.path());
   expect_complete(seen);
-  EXPECT_THAT(seen.dom, HasSubstr("data-animations=\"1\""));
-  EXPECT_THAT(seen.dom, HasSubstr("deflections × 200"));
-  EXPECT_THAT(seen.dom, Not(HasSubstr("data-charts=\"0\"")));
+  EXPECT_THAT(seen.root, HasSubstr("data-animations=\"1\""));
+  EXPECT_THAT(seen.body, HasSubstr("deflections × 200"));
+  EXPECT_THAT(seen.root, Not(HasSubstr("data-charts=\"0\"")));
 }
 
 TEST_F(Browser, DrawsAnAnimationPage) {
   write_pendulum_page(folder_ / "pendulum.html");
   const Visit seen = visit(folder_ / "pendulum.html", folder_.path());
   expect_complete(seen);
-  EXPECT_THAT(seen.dom, HasSubstr("data-charts=\"1\" data-animations=\"1\""));
+  EXPECT_THAT(seen.root, HasSubstr("data-charts=\"1\" data-animations=\"1\""));
 }
 
 TEST_F(Browser, SaysSoWithoutWebGlAndDrawsTheCharts) {
   write_pendulum_page(folder_ / "pendulum.html");
   const Visit seen = visit(folder_ / "pendulum.html", folder_.path(), "--disable-3d-apis");
   expect_complete(seen);
-  EXPECT_THAT(seen.dom, HasSubstr("data-charts=\"1\" data-animations=\"0\""));
-  EXPECT_THAT(seen.dom, HasSubstr("class=\"animation without-webgl\""));
+  EXPECT_THAT(seen.root, HasSubstr("data-charts=\"1\" data-animations=\"0\""));
+  EXPECT_THAT(seen.body, HasSubstr("class=\"animation without-webgl\""));
 }
 
 TEST_F(Browser, ReportsAChartWithNothingInIt) {
@@ -115,6 +115,6 @@ TEST_F(Browser, ReportsAChartWithNothingInIt) {
                     .series = {{"gap", Eigen::Vector2d(0, 1), Eigen::Vector2d::Constant(std::nan(""))}}});
   report.write(folder_ / "empty.html");
   const Visit seen = visit(folder_ / "empty.html", folder_.path());
-  EXPECT_THAT(seen.dom, HasSubstr("data-failure=\"nothing drawn in chart 1\""));
-  EXPECT_THAT(seen.dom, Not(HasSubstr("data-ready")));
+  EXPECT_THAT(seen.root, HasSubstr("data-failure=\"nothing drawn in chart 1\""));
+  EXPECT_THAT(seen.root, Not(HasSubstr("data-ready")));
 }

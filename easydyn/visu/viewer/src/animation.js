@@ -219,7 +219,7 @@ class Picture {
 
   addGround(height) {
     const size = Math.max(this.high.x - this.low.x, this.high.y - this.low.y, 1);
-    const step = 10 ** Math.floor(Math.log10(size / 4)) / (size > 50 ? 1 : 1);
+    const step = 10 ** Math.floor(Math.log10(size / 4)) / 2;
     const margin = Math.min(0.25 * size, 30) + step;
     const ends = [];
     const [x0, x1] = [Math.floor((this.low.x - margin) / step), Math.ceil((this.high.x + margin) / step)];
@@ -309,7 +309,7 @@ export function drawAnimation(figure, data) {
   const reset = () => view(data.camera.azimuth, data.camera.elevation);
   function refit(w) {
     const width = Math.max(260, Math.floor(w || place.getBoundingClientRect().width));
-    const height = Math.round(Math.min(width * 0.5, 520));
+    const height = Math.round(Math.min(width * 0.44, 520));
     renderer.setSize(width, height);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();

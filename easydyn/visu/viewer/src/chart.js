@@ -66,13 +66,16 @@ function logarithmicTicks(low, high) {
 function axisOptions(axis, isX) {
   const options = {
     label: axisTitle(axis),
-    labelFont: font, font, stroke: ink, labelSize: isX ? 22 : 24, size: isX ? 34 : 58, gap: 4, labelGap: isX ? 2 : 0,
+    labelFont: font, font, stroke: ink, labelSize: isX ? 18 : 22, size: isX ? 26 : 58, gap: 4, labelGap: 0,
     grid: { stroke: gridInk, width: 1 },
     ticks: { stroke: '#999999', width: 1, size: 5 },
     border: { show: true, stroke: '#999999', width: 1 },
     values: (u, splits) => splits.map((v) => (v === null ? '' : numberText(v, 6))),
   };
-  if (axis.log) {
+  if (axis.ticks) {
+    options.splits = (u, i, low, high) => axis.ticks.filter((v) => v >= low * 0.999 && v <= high * 1.001);
+    options.filter = (u, splits) => splits;
+  } else if (axis.log) {
     options.splits = (u, i, low, high) => logarithmicTicks(low, high);
     options.filter = (u, splits) => splits;
   }
@@ -113,9 +116,9 @@ export function drawChart(figure, chart) {
   // the bands lie below the curves
   for (const band of chart.bands) {
     const x = xs[band.x], fill = band.colour || '#bbbbbb';
-    const side = { stroke: fill, width: 1, points: { show: false } };
-    add(x, curve(floats(band.upper), chart.y.log), { ...side, label: `${band.name}, upper` });
-    add(x, curve(floats(band.lower), chart.y.log), { ...side, label: `${band.name}, lower` });
+    const side = { stroke: fill, width: 1, points: { show: false } };  // one entry in the legend for both
+    add(x, curve(floats(band.upper), chart.y.log), { ...side, label: band.name, class: 'band' });
+    add(x, curve(floats(band.lower), chart.y.log), { ...side, label: `${band.name}, lower`, class: 'unnamed' });
     bands.push({ series: [options.length - 2, options.length - 1], fill: `${fill}55` });
   }
   let colourOf = 0;
@@ -130,11 +133,11 @@ export function drawChart(figure, chart) {
     if (s.stroke === 'points' || s.stroke === 'line_and_points')
       series.points = { show: true, size: 6, width: 1, stroke, fill: s.stroke === 'points' ? stroke : '#ffffff' };
     if (s.stroke === 'steps' || s.stroke === 'bars') {
+      // two points per band, at its edges; neighbours meet in an upright line
       const edges = bandEdges(x, chart.x.log);
       stepped.set(options.length, { edges, centres: x });
-      x = edges;
-      y = [...y, y[y.length - 1]];
-      series.paths = uPlot.paths.stepped({ align: 1 });
+      x = ascending(x.flatMap((c, i) => [edges[i], edges[i + 1]]));
+      y = y.flatMap((v) => [v, v]);
       if (s.stroke === 'bars') series.fill = `${stroke}55`;
     }
     add(x, y, series);
@@ -150,13 +153,13 @@ export function drawChart(figure, chart) {
   options[0] = {
     label: axisTitle(chart.x),
     value: (u, v, series, i) => {
-      if (i === null || i === undefined) return '–';
-      return numberText(onlySteps ? onlySteps.centres[Math.min(i, onlySteps.centres.length - 1)] : v, 6);
+      if (i === null || i === undefined) return '';
+      return numberText(onlySteps ? onlySteps.centres[i >> 1] : v, 4);
     },
   };
-  for (const series of options.slice(1)) series.value = (u, v, s, i) => (i === null ? '–' : numberText(v));
+  for (const series of options.slice(1)) series.value = (u, v, s, i) => (i === null || i === undefined ? '' : numberText(v));
   const dataIdx = (u, series, i, at) => {
-    if (onlySteps) return Math.min(last(data[0], at), onlySteps.centres.length - 1);
+    if (onlySteps) return 2 * Math.min(last(onlySteps.edges, at), onlySteps.centres.length - 1);
     if (series === 0) return i;
     return nearestWithValue(data[0], data[series], at);
   };
@@ -173,10 +176,11 @@ export function drawChart(figure, chart) {
     axes: [axisOptions(chart.x, true), axisOptions(chart.y, false)],
     series: options,
     bands,
-    legend: { show: true, live: true },
+    legend: { show: true, live: true, markers: { width: 2, dash: (u, i) => (options[i].dash ? 'dashed' : 'solid') } },
     cursor: { dataIdx, drag: { x: true, y: true, uni: 24, setScale: true }, points: { size: 7 }, focus: { prox: 1e6 } },
     focus: { alpha: 1 },
     hooks: {
+      setCursor: [(u) => u.root.classList.toggle('reading', u.cursor.left >= 0)],
       setSelect: [(u) => { if (u.select.width > 0) u.zoomed = true; }],
     },
   }, data, place);
