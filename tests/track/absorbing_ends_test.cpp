@@ -18,8 +18,8 @@ double reflected(const TrackData& data, std::span<const double> frequencies,
   const int inside = int(20 / spacing);
   const TrackModel track(data, inside + 2 * data.ends.bays);
   TrackData endless = data;
-  endless.ends.bays = 250;
-  const int extra = 1000;
+  endless.ends.bays = 150;
+  const int extra = 350;
   const TrackModel reference(endless, inside + 2 * (data.ends.bays + extra), -extra * spacing);
   double worst = 0;
   const Eigen::VectorXcd at_load = compute_rail_receptance(reference, load, load, frequencies);
