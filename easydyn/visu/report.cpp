@@ -38,6 +38,7 @@ constexpr const char* stage = R"(<div class="frame"><div class="stage">
 <button type="button" data-control="side">Side view</button>
 <button type="button" data-control="reset">Reset view</button>
 </div></div>
+<p class="caption screen">Drag to turn, turn the wheel to zoom, drag with the right button to shift.</p>
 )";
 
 /// A number, or a dash that stands for none: such cells are right-aligned.

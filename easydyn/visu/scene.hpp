@@ -60,22 +60,21 @@ struct Link {
 /// Shown at z = height + Scene::exaggeration * deflection.
 struct DeformingLine {
   std::string name;
-  Eigen::VectorXd x;           ///< n positions, ascending [m]
-  Eigen::MatrixXd deflection;  ///< times x n, **upward** [m]
-  double y = 0, height = 0;    ///< of the undeformed line [m]
-  double width = 0.06;         ///< of the line [m]
-  std::optional<Eigen::Vector3d> block =
-      {};  ///< if given: a box of this size at each point instead of a line
+  Eigen::VectorXd x = {};                     ///< n positions, ascending [m]
+  Eigen::MatrixXd deflection = {};            ///< times x n, **upward** [m]
+  double y = 0, height = 0;                   ///< of the undeformed line [m]
+  double width = 0.06;                        ///< of the line [m]
+  std::optional<Eigen::Vector3d> block = {};  ///< a box of this size at each point, not a line
   std::string colour = "#333333";
 };
 
 /// Where the viewer stands at first. The view encloses everything if `width` is 0.
 struct Camera {
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
-  double width = 0;       ///< visible width at the target [m]
-  double azimuth = -60;   ///< of the viewer, from x towards y [deg]; -90 looks along +y
-  double elevation = 15;  ///< above the horizon [deg]
-  std::string follow;     ///< name of a frame whose x motion the camera follows; empty: it stands still
+  double width = 0;         ///< visible width at the target [m]
+  double azimuth = -60;     ///< of the viewer, from x towards y [deg]; -90 looks along +y
+  double elevation = 15;    ///< above the horizon [deg]
+  std::string follow = {};  ///< name of a frame whose x motion the camera follows; empty: it stands still
 };
 
 /// An animated scene as plain data; it knows no mechanics. Right-handed axes, z up.
@@ -86,8 +85,7 @@ struct Scene {
   std::vector<Item> items;
   std::vector<Link> links;
   std::vector<DeformingLine> lines;
-  double exaggeration =
-      1;  ///< of small motions (MovingFrame::rest, DeformingLine); stated beside the picture
+  double exaggeration = 1;            ///< of small motions; stated beside the picture
   std::optional<double> ground = {};  ///< height of a grid that stands for the ground [m]
   Camera camera;
 };
@@ -99,8 +97,9 @@ void check(const Scene& scene);
 /// The scene with at most `max_times` of its times, evenly chosen, first and last kept.
 Scene thinned(const Scene& scene, int max_times);
 
-/// Text for the dataset `/scene` of results.h5 and for the viewer: JSON with arrays as base64 of
-/// little-endian float32. Thinned to `max_times`. Format: docs/formats.md.
+/// Text for the dataset `/scene` of results.h5 and for the viewer, thinned to `max_times`: a JSON object whose
+/// members bear the names of Scene's. `time`, `x`, `deflection` (row by row) and `poses` (x y z and quaternion
+/// x y z w per time) are base64 of little-endian float32.
 /// @throws ModelError as check()
 std::string to_json(const Scene& scene, int max_times = 600);
 

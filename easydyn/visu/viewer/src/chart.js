@@ -196,8 +196,8 @@ export function drawChart(figure, chart) {
 
 // Whether curves, not only axes, have been drawn: coloured pixels inside the plot area.
 export function isDrawn(plot) {
-  const { left, top, width, height } = plot.bbox;
-  const pixels = plot.ctx.getImageData(left, top, width, height).data;
+  const { left, top, width, height } = plot.bbox, edge = 8;  // the axes' lines lie on the border
+  const pixels = plot.ctx.getImageData(left + edge, top + edge, width - 2 * edge, height - 2 * edge).data;
   let coloured = 0;
   for (let i = 0; i < pixels.length; i += 4)
     if (pixels[i + 3] > 128 && Math.min(pixels[i], pixels[i + 1], pixels[i + 2]) < 200) coloured++;
