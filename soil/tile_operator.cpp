@@ -63,6 +63,31 @@ struct RowMatrices {
   }
 };
 
+/// Asks for the lines `ahead` in equal portions, so that the memory works while the arithmetic goes on.
+template <class T>
+class Prefetcher {
+ public:
+  Prefetcher(const Tile<T>& tile, int line_size, int portions)
+      : tile_(tile), line_bytes_(line_size * static_cast<int>(sizeof(T))) {
+    const int total = tile.ahead_count * ((line_bytes_ + 63) / 64);
+    portion_ = (total + portions - 1) / portions;
+  }
+  EASYDYN_INLINE void fetch() {
+    for (int p = 0; p < portion_ && line_ < tile_.ahead_count; ++p) {
+      __builtin_prefetch(reinterpret_cast<const char*>(tile_.ahead[line_]) + offset_, 0, 2);
+      offset_ += 64;
+      if (offset_ >= line_bytes_) {
+        offset_ = 0;
+        ++line_;
+      }
+    }
+  }
+
+ private:
+  const Tile<T>& tile_;
+  int line_bytes_, portion_, line_ = 0, offset_ = 0;
+};
+
 /// Terms of the outer faces x = const and y = const for node i of one pack of elements.
 template <class T, int N>
 void add_end_terms(const Tile<T>& tile, const RowMatrices<T, N>& row, int i, int e, const pack<T>* gx,
@@ -98,7 +123,7 @@ void add_end_terms(const Tile<T>& tile, const RowMatrices<T, N>& row, int i, int
 /// shares.
 template <class T, int N, bool first>
 EASYDYN_INLINE void apply_node(const Tile<T>& tile, const LineOperators<T, N>& line,
-                               const RowMatrices<T, N>& row, int i, int e) {
+                               const RowMatrices<T, N>& row, int i, int e, Prefetcher<T>& ahead) {
   constexpr int n = N + 1, nn = n * n;
   using V = pack<T>;
   const int stride = tile.stride;
@@ -113,6 +138,7 @@ EASYDYN_INLINE void apply_node(const Tile<T>& tile, const LineOperators<T, N>& l
     for (int j = 0; j < n; ++j) {
       const T* from = tile.w[k * n + j] + e;
       const T weight = tile.my[j] * tile.mz[k];
+      ahead.fetch();
 #pragma GCC unroll 3
       for (int c = 0; c < 3; ++c, from += N * stride) {
         V in[n];
@@ -216,9 +242,10 @@ template <class T, int N>
 void apply_tile(const Tile<T>& tile) {
   static const LineOperators<T, N> line;
   const RowMatrices<T, N> row(tile, line);
+  Prefetcher<T> ahead(tile, 3 * N * tile.stride, (N + 1) * (N + 1) * N * tile.stride / Pack<T>::lanes);
   for (int e = 0; e < tile.stride; e += Pack<T>::lanes) {
-    apply_node<T, N, true>(tile, line, row, 0, e);
-    for (int i = 1; i < N; ++i) apply_node<T, N, false>(tile, line, row, i, e);
+    apply_node<T, N, true>(tile, line, row, 0, e, ahead);
+    for (int i = 1; i < N; ++i) apply_node<T, N, false>(tile, line, row, i, e, ahead);
   }
 }
 

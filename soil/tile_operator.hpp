@@ -48,6 +48,10 @@ struct Tile {
   T hy, hz;               ///< element size [m]
   T gradient_end[max_n];  ///< B_y / 2 at an outer face y = const, else zero
   bool y_end;             ///< one of them is not zero
+
+  static constexpr int max_ahead = 512;
+  const T* ahead[max_ahead];  ///< lines needed soon: fetched into the cache between the arithmetic
+  int ahead_count;
 };
 
 /// f (+)= K w / m_x for one row of elements.

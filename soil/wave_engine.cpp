@@ -178,6 +178,8 @@ void WaveEngine<T>::make_boundary_tables() {
 template <class T>
 void WaveEngine<T>::set_time_step(double dt) {
   dt_ = dt;
+  keep_.clear();
+  for (const double rate : rates_) keep_.push_back(static_cast<T>(std::exp(-rate * dt)));
   const GllRule rule(N_);
   std::vector<double> decay, gain;
   make_sponge(node_positions(rule, lattice_.x), lattice_.interior_x(), boundary_.sponge_damping, dt, decay,
@@ -308,6 +310,24 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
           tile.f[k * n + j] = f;
           tile.add[k * n + j] = (k == 0 && ez > 0) || (j == 0 && ey > r0);
         }
+      // Soon needed: what finishes this row, then the field of the next row (or of the first one, a slab up).
+      tile.ahead_count = 0;
+      const auto fetch = [&](const AlignedVector<T>& values, int Y, int Z) {
+        if (tile.ahead_count < Tile<T>::max_ahead)
+          tile.ahead[tile.ahead_count++] = values.data() + line_offset(Y, Z);
+      };
+      for (int k = 0; k < N_; ++k)
+        for (int j = 0; j < N_; ++j) fetch(v_, ey * N_ + j, ez * N_ + k);
+      if (ey + 1 < r1 || !top) {
+        const int next_y = (ey + 1 < r1 ? ey + 1 : r0) * N_, next_z = (ey + 1 < r1 ? ez : ez + 1) * N_;
+        for (int k = 0; k < n; ++k)
+          for (int j = 1; j < n; ++j) {
+            fetch(u_, next_y + j, next_z + k);
+            if (field == Field::viscous) fetch(v_, next_y + j, next_z + k);
+            if (field == Field::memory)
+              for (const auto& zeta : zeta_) fetch(zeta, next_y + j, next_z + k);
+          }
+      }
       tile_function_(tile);
 
       const int j0 = ey == r0 && seam_low ? 1 : 0, j1 = last_row ? n : N_, k1 = top ? n : N_;
@@ -369,7 +389,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
   const T dt = static_cast<T>(dt_), half_dt = static_cast<T>(0.5 * dt_);
   const int memories = static_cast<int>(zeta_.size());
   T keep[3] = {};
-  for (int l = 0; l < memories; ++l) keep[l] = static_cast<T>(std::exp(-rates_[l] * dt_));
+  for (int l = 0; l < memories; ++l) keep[l] = keep_[l];
 
   V kinetic{}, strain{}, work{};
   for (int c = 0; c < 3; ++c) {

@@ -143,6 +143,7 @@ class WaveEngine {
   AlignedVector<T> u_, v_;
   std::vector<AlignedVector<T>> zeta_;
   std::vector<Scratch> scratch_;
+  std::vector<T> keep_;  // exp(-omega_l dt)
   double dt_ = 0;
 
   // Surface forces of the step: lines of the top plane, divided by m_x.
