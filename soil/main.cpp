@@ -45,6 +45,7 @@ writes report.html beside them: one page that opens without a network.)";
 
 struct RunArguments {
   fs::path site, loads, output;
+  std::string damping = "constant";
   bool dry_run = false;
   bool full_model = false;
   SolverOptions options;
@@ -54,28 +55,24 @@ void add_run_command(CLI::App& app, RunArguments& run) {
   CLI::App& command =
       *app.add_subcommand("run", "Waves in the ground under given loads, by 3D spectral elements");
   command.footer(run_footer);
-  command.add_option("SITE", run.site, "Site file (TOML)")->required();
-  command.add_option("SURFACE_LOADS", run.loads, "Load histories (HDF5)")->required();
+  command.add_option("SITE", run.site, "Site file (TOML)")->required()->type_name("");
+  command.add_option("SURFACE_LOADS", run.loads, "Load histories (HDF5)")->required()->type_name("");
   command.add_option("-o,--output", run.output, "Folder of vibrations.h5, made if needed")
       ->required()
       ->type_name("DIR");
   command.add_flag("-n,--dry-run", run.dry_run, "Print mesh, memory, steps and expected time, and stop");
   command.add_option("-j,--threads", run.options.threads, "Threads; 0: one per core")
-      ->check(CLI::Range(0, 1024))
+      ->check(CLI::Range(0, 1024).description(""))
       ->capture_default_str();
-  command.add_option("--degree", run.options.degree, "Polynomial degree of the elements")
-      ->check(CLI::Range(3, 6))
+  command.add_option("--degree", run.options.degree, "Polynomial degree of the elements, 3 to 6")
+      ->check(CLI::Range(3, 6).description(""))
       ->capture_default_str();
   command
-      .add_option(
-          "--damping", run.options.damping,
-          "constant: the ratio of the site file at all frequencies; stiffness: in proportion to frequency; "
-          "none: elastic ground")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, DampingModel>{{"constant", DampingModel::constant_ratio},
-                                              {"stiffness", DampingModel::stiffness_proportional},
-                                              {"none", DampingModel::none}}))
-      ->default_str("constant")
+      .add_option("--damping", run.damping,
+                  "constant: the ratio of the site file at all frequencies; stiffness: in proportion to "
+                  "frequency; none: elastic ground")
+      ->check(CLI::IsMember({"constant", "stiffness", "none"}).description(""))
+      ->capture_default_str()
       ->type_name("MODEL");
   command.add_flag("--double", run.options.double_precision,
                    "Fields in double precision (slower, for checks)");
@@ -110,6 +107,11 @@ void run(RunArguments& arguments, const std::string& command_line) {
   }
   const Site site = read_site(arguments.site);
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
+  const std::map<std::string, DampingModel> damping_models{
+      {"constant", DampingModel::constant_ratio},
+      {"stiffness", DampingModel::stiffness_proportional},
+      {"none", DampingModel::none}};
+  arguments.options.damping = damping_models.at(arguments.damping);
   arguments.options.half_model = !arguments.full_model;
   WaveSolver solver = [&] {
     try {
@@ -135,7 +137,7 @@ void run(RunArguments& arguments, const std::string& command_line) {
 void add_report_command(CLI::App& app, fs::path& folder) {
   CLI::App& command = *app.add_subcommand("report", "One page on the results in a folder");
   command.footer(report_footer);
-  command.add_option("DIR", folder, "Folder of the results")->required();
+  command.add_option("DIR", folder, "Folder of the results")->required()->type_name("");
 }
 
 void write_report(const fs::path& folder) {
