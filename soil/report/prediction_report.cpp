@@ -71,10 +71,8 @@ void add_animation(visu::Report& report, const ResultReader& track) {
   if (!track.has("/scene")) return;
   visu::Scene scene = visu::scene_from_json(track.read_text("/scene"), track.path().string() + ":/scene");
   report.add_section("The passage");
-  report.add_animation(
-      std::move(scene),
-      "Drag to turn, wheel to zoom, right button to shift. Deflections are magnified by the factor "
-      "shown in the picture; lengths are true.");
+  report.add_animation(std::move(scene),
+                       "Deflections are magnified by the factor shown in the picture; lengths are true.");
 }
 
 void add_parameters(visu::Report& report, const char* title, const ResultReader& file) {

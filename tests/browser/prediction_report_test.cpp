@@ -1,0 +1,58 @@
+#include "soil/report/prediction_report.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "easydyn/error.hpp"
+#include "tests/browser/synthetic_results.hpp"
+#include "tests/temporary_folder.hpp"
+
+using namespace easydyn;
+using namespace easydyn::testing;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+namespace {
+
+class PredictionReport : public ::testing::Test {
+ protected:
+  std::string write() {
+    soil::write_prediction_report(folder_.path(), folder_ / "report.html");
+    return read_whole_file(folder_ / "report.html");
+  }
+  TemporaryFolder folder_;
+};
+
+}  // namespace
+
+TEST_F(PredictionReport, HoldsBothStepsTheirMeetingAndTheirParameters) {
+  write_synthetic_results(folder_.path());
+  const std::string page = write();
+  for (const char* text :
+       {"Railway ground vibration: prediction", "Step 1: vehicle and track", "Step 2: ground vibration",
+        "recoupling error", "band-limited to 50 Hz", "no better than about 10 dB", "dB re 5·10⁻⁸ m/s",
+        "synthetic --speed 30 --out &lt;folder&gt;", "M-l: made up", "F: made up &lt;&amp;&gt;", "cs = 150",
+        "Limits and assumptions"}) {
+    EXPECT_THAT(page, HasSubstr(text));
+  }
+}
+
+TEST_F(PredictionReport, HoldsOneStepIfThereIsOne) {
+  write_synthetic_results(folder_.path());
+  std::filesystem::remove(folder_ / "vibrations.h5");
+  std::string page = write();
+  EXPECT_THAT(page, HasSubstr("Step 1: vehicle and track"));
+  EXPECT_THAT(page, Not(HasSubstr("Step 2: ground vibration")));
+
+  write_synthetic_results(folder_.path());
+  std::filesystem::remove(folder_ / "results.h5");
+  page = write();
+  EXPECT_THAT(page, Not(HasSubstr("Step 1: vehicle and track")));
+  EXPECT_THAT(page, HasSubstr("Step 2: ground vibration"));
+  EXPECT_THAT(page, Not(HasSubstr("Where both steps meet")));
+}
+
+TEST_F(PredictionReport, RefusesAFolderWithoutResults) {
+  EXPECT_THAT(message_of<InputError>([&] { write(); }),
+              HasSubstr(folder_.path().string() + ": holds neither results.h5 nor vibrations.h5"));
+}
