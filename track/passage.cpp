@@ -35,6 +35,8 @@ class PassageRecorder {
     if (has_foundation_) p_.foundation_displacement.resize(rows, ns);
     p_.contact_force.resize(rows, nw);
     p_.contact_position.resize(rows, nw);
+    p_.largest_contact_force.setZero(nw);
+    p_.contact_loss_time.setZero(nw);
     for (const WheelRailContact* c : contacts) p_.contact_names.push_back(c->name());
     p_.coordinates.resize(rows, system.body_size());
     for (int i = 0; i < system.body_size(); ++i) p_.coordinate_names.push_back(system.coordinate_name(i));
@@ -47,10 +49,15 @@ class PassageRecorder {
       energy->setZero(rows);
   }
 
-  // Powers are integrated over every step (trapezoidal rule), whether it is recorded or not.
-  void integrate(const State& state) {
+  // What must see every step, whether it is recorded or not: powers (trapezoidal rule) and contact peaks.
+  void watch(const State& state) {
     const EnergyBalance now = system_.compute_energy(state);
     const double h = state.t - last_time_;
+    for (std::size_t w = 0; w < contacts_.size(); ++w) {
+      double& largest = p_.largest_contact_force[static_cast<Index>(w)];
+      largest = std::max(largest, contacts_[w]->force());
+      if (!contacts_[w]->is_closed()) p_.contact_loss_time[static_cast<Index>(w)] += h;
+    }
     if (has_last_) {
       dissipated_ += 0.5 * h * (last_.dissipated + now.dissipated);
       supplied_ += 0.5 * h * (last_.supplied + now.supplied);
@@ -60,7 +67,7 @@ class PassageRecorder {
     has_last_ = true;
   }
 
-  // After integrate(): the system has just been evaluated at this state.
+  // After watch(): the system has just been evaluated at this state.
   void record(const State& state) {
     const TrackModel& model = track_.model();
     const VectorXd q = track_.coordinates(state.q), qd = track_.coordinates(state.qd);
@@ -121,16 +128,17 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
   const State start = solve_quasi_static_motion(system, system.initial_state(), options.start_difference);
   const auto outputs = static_cast<Index>(std::ceil(options.duration / options.output_step - 1e-9));
   PassageRecorder recorder(system, track, contacts, options, outputs + 1);
-  recorder.integrate(start);
+  recorder.watch(start);
   recorder.record(start);
-  recorder.passage().total_ballast_reaction_at_start =
-      track.model().ballast_reactions(track.coordinates(start.q), track.coordinates(start.qd)).sum();
+  const State at_rest = solve_static_equilibrium(system, system.initial_state());
+  recorder.passage().static_ballast_reaction =
+      track.model().ballast_reactions(track.coordinates(at_rest.q), track.coordinates(at_rest.qd)).sum();
 
   Newmark integrator(system, start, {.step = options.step});
   for (Index i = 1; i <= outputs; ++i) {
     for (Index k = 0; k < every; ++k) {
       integrator.step();
-      recorder.integrate(integrator.state());
+      recorder.watch(integrator.state());
     }
     recorder.record(integrator.state());
     if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));

@@ -25,6 +25,8 @@ struct Passage {
   Eigen::VectorXd time;                                ///< nt [s], from 0
   std::vector<std::string> contact_names;              ///< nw
   Eigen::MatrixXd contact_force, contact_position;     ///< nt x nw [N], [m]
+  Eigen::VectorXd largest_contact_force;               ///< nw, over every time step [N]
+  Eigen::VectorXd contact_loss_time;                   ///< nw, total time without contact [s]
   Eigen::VectorXd sleeper_x;                           ///< ns recorded sleepers [m]
   Eigen::MatrixXd rail_deflection;                     ///< nt x ns, above the sleepers [m]
   Eigen::MatrixXd sleeper_displacement;                ///< nt x ns [m]
@@ -38,7 +40,7 @@ struct Passage {
   Eigen::MatrixXd body_pitch;                          ///< nt x nb, rotation about y, nose down [rad]
   Eigen::VectorXd kinetic_energy, potential_energy;    ///< nt [J]
   Eigen::VectorXd dissipated_energy, supplied_energy;  ///< nt [J], since the start
-  double total_ballast_reaction_at_start = 0;          ///< of all sleepers of the track [N]
+  double static_ballast_reaction = 0;  ///< of all sleepers together, at rest at the place of the start [N]
   Newmark::Statistics statistics;
 };
 
