@@ -149,6 +149,10 @@ int run_program(int argc, char** argv) {
   CLI::App app("Vibrations in the ground from loads on its surface.", "soil");
   app.set_version_flag("--version", "soil " + results::library_version());
   app.require_subcommand(1);
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return fmt::format("soil: {}\nsoil --help, soil run --help and soil report --help explain the options.\n",
+                       error.what());
+  });
   app.footer(
       "\nExample:\n  soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output "
       "results/tram\n\n"
