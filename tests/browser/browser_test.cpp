@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 #include "easydyn/visu/report.hpp"
@@ -97,6 +98,41 @@ TEST_F(Browser, DrawsAnAnimationPage) {
   const Visit seen = visit(folder_ / "pendulum.html", folder_.path());
   expect_complete(seen);
   EXPECT_THAT(seen.root, HasSubstr("data-charts=\"1\" data-animations=\"1\""));
+}
+
+TEST_F(Browser, PlacesAnItemWhereItsFrameTakesIt) {
+  // a ball 1 m below a frame that has turned by 90 degrees about y, magnified twice from a rest at 45 degrees,
+  // stands at x = -1 m: a quarter from the left of a picture that is 4 m wide, at mid-height
+  const auto turn = [](double degrees) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, Eigen::Vector3d::UnitY()));
+  };
+  visu::Scene scene;
+  scene.time = Eigen::Vector2d(0, 1);
+  const visu::Pose pose{{0, 0, 1}, turn(67.5)};
+  scene.frames = {{"arm", {pose, pose}, visu::Pose{{0, 0, 2}, turn(45)}}};
+  scene.items = {{.name = "ball",
+                  .frame = "arm",
+                  .shape = visu::Shape::sphere,
+                  .size = {0.2, 0, 0},
+                  .colour = "#aa0000",
+                  .offset = {{0, 0, -1}}}};
+  scene.exaggeration = 2;
+  scene.camera = {.target = {0, 0, 0}, .width = 4, .azimuth = -90, .elevation = 0};
+  visu::write_animation_page(folder_ / "page.html", "Arm", scene);
+  std::ofstream(folder_ / "page.html", std::ios::app) << R"(<script>setTimeout(() => {
+    const canvas = document.createElement('canvas'); canvas.width = 400; canvas.height = 100;
+    const context = canvas.getContext('2d');
+    context.drawImage(document.querySelector('.stage canvas'), 0, 0, 400, 100);
+    const pixels = context.getImageData(0, 0, 400, 100).data;
+    let n = 0, x = 0, y = 0;
+    for (let i = 0; i < pixels.length; i += 4)
+      if (pixels[i + 1] < 100) { n++; x += (i / 4) % 400; y += Math.floor(i / 1600); }
+    document.documentElement.dataset.x = Math.round(x / n / 10);
+    document.documentElement.dataset.y = Math.round(y / n / 10);
+  }, 500)</script>)";
+  const Visit seen = visit(folder_ / "page.html", folder_.path());
+  expect_complete(seen);
+  EXPECT_THAT(seen.root, HasSubstr("data-x=\"10\" data-y=\"5\""));  // of 40 x 10
 }
 
 TEST_F(Browser, SaysSoWithoutWebGlAndDrawsTheCharts) {

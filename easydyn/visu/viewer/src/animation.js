@@ -85,7 +85,7 @@ class MovingFrame {
     const { position, quaternion } = this.group;
     const a = 7 * i, b = s > 0 ? a + 7 : a, p = this.poses;
     position.set(p[a] + s * (p[b] - p[a]), p[a + 1] + s * (p[b + 1] - p[a + 1]), p[a + 2] + s * (p[b + 2] - p[a + 2]));
-    quaternion.fromArray(p, a).slerp(new Quaternion().fromArray(p, b), s);
+    quaternion.fromArray(p, a + 3).slerp(new Quaternion().fromArray(p, b + 3), s);
     if (this.rest && magnification !== 1) {
       position.y = this.rest.y + magnification * (position.y - this.rest.y);
       position.z = this.rest.z + magnification * (position.z - this.rest.z);
