@@ -146,7 +146,7 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
   const std::string highest = visu::short_number_text(ground.read_number_attribute("highest_frequency"));
   report.add_subsection("Indicators");
   visu::Table table{{"receiver", "distance [m]", "PPV x [mm/s]", "PPV y [mm/s]", "PPV z [mm/s]",
-                     "PPV resultant [mm/s]", "KB_Fmax", "VdB [dB re 1e-6 in/s]", "strongest band [Hz]"},
+                     "PPV resultant [mm/s]", "KB_Fmax", "VdB [dB]", "strongest band [Hz]"},
                     {},
                     fmt::format("Indicators of the ground vibration, band-limited to {} Hz", highest)};
   for (const Index i : receivers.near) {
@@ -164,7 +164,8 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
       "what the model holds and are lower bounds of what a broad-band instrument would show. PPV: largest "
       "magnitude of each velocity component and of the vector. KB_Fmax: DIN 45669-1, of the vertical "
       "velocity, "
-      "dimensionless. VdB: largest 1 s rms of the vertical velocity as a level. Strongest band: one-third "
+      "dimensionless. VdB: largest 1 s rms of the vertical velocity as a level re 10⁻⁶ in/s. Strongest band: "
+      "one-third "
       "octave "
       "band with the highest rms of v_z.",
       highest));
