@@ -7,9 +7,12 @@
 //         |  rod 2
 //
 // Shows: a system is a class that declares coordinates and bodies and says where the bodies are. Velocities,
-// accelerations and the equations of motion follow. Newmark's method is of second order: half the step, a
-// quarter of the energy error. Run: ./run double_pendulum Prints: step 2 ms: energy drift 1.57e-06 Prints:
-// step 1 ms: energy drift 3.93e-07 Next: tram.cpp (a vehicle on its track)
+// accelerations and the equations of motion follow. Newmark's method is of second order: half the step, a quarter
+// of the energy error.
+// Run: ./run double_pendulum
+// Prints: step 2 ms: energy drift 1.57e-06
+// Prints: step 1 ms: energy drift 3.93e-07
+// Next: tram.cpp (a vehicle on its track)
 
 #include <fmt/format.h>
 
