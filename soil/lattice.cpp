@@ -179,12 +179,14 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     depth.push_back(depth.back() + size);
     layer_down.push_back(last);
   } while (depth.back() < bottom);
-  for (int i = 0; i < options.sponge_elements; ++i) {
+  // Elements of the half-space are larger than those along the surface: three quarters of them reach as far.
+  const int sponge_z = (3 * options.sponge_elements + 3) / 4;
+  for (int i = 0; i < sponge_z; ++i) {
     size = size < full ? std::min(full * options.sponge_growth, size * pace) : size * options.sponge_growth;
     depth.push_back(depth.back() + size);
     layer_down.push_back(last);
   }
-  lattice.sponge_z = {options.sponge_elements, 0};
+  lattice.sponge_z = {sponge_z, 0};
   for (auto d = depth.rbegin(); d != depth.rend(); ++d) lattice.z.push_back(-*d);
   lattice.z.back() = 0;
   lattice.layer.assign(layer_down.rbegin(), layer_down.rend());

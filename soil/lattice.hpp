@@ -12,7 +12,7 @@ namespace easydyn::soil {
 struct LatticeOptions {
   int degree = 4;               ///< polynomial degree of the elements, 3..6
   bool half_model = true;       ///< only y >= 0, symmetry plane y = 0
-  int sponge_elements = 8;      ///< damped elements on each outer side and at the bottom, >= 0
+  int sponge_elements = 8;      ///< damped elements on each outer side (three quarters of it below), >= 0
   double sponge_growth = 1.15;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
   int lanes = 16;               ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
 };

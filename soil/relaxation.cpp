@@ -45,7 +45,7 @@ Relaxation fit_relaxation(double ratio, double lowest, double highest, double re
   }
   body.weights = A.colPivHouseholderQr().solve(Eigen::VectorXd::Constant(samples, 2 * ratio));
   // Scale so that the ratio holds at the reference (a second pass absorbs the change of Re).
-  for (int pass = 0; pass < 3; ++pass) body.weights *= ratio / body.compute_damping_ratio(reference);
+  for (int pass = 0; pass < 10; ++pass) body.weights *= ratio / body.compute_damping_ratio(reference);
   body.unrelaxed = 1 / relative_modulus(body, 2 * M_PI * reference).real();
   return body;
 }

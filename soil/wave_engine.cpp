@@ -31,16 +31,21 @@ std::vector<double> node_positions(const GllRule& rule, const std::vector<double
   return position;
 }
 
-/// Sponge factors of the nodes of one axis: damping d rises quadratically from the inner to the outer edge.
-void make_sponge(const std::vector<double>& position, std::array<double, 2> interior, double damping,
+/// Sponge factors of the nodes of one axis: `strength` [m/s] / length is the damping at the outer edges.
+void make_sponge(const std::vector<double>& position, std::array<double, 2> interior, double strength,
                  double dt, std::vector<double>& decay, std::vector<double>& gain) {
   decay.assign(position.size(), 1.0);
   gain.assign(position.size(), 1.0);
   for (std::size_t p = 0; p < position.size(); ++p) {
-    double s = 0;
-    if (position[p] < interior[0]) s = (interior[0] - position[p]) / (interior[0] - position.front());
-    if (position[p] > interior[1]) s = (position[p] - interior[1]) / (position.back() - interior[1]);
-    const double a = damping * s * s * dt / 2;
+    double s = 0, length = 1;
+    if (position[p] < interior[0]) {
+      length = interior[0] - position.front();
+      s = (interior[0] - position[p]) / length;
+    } else if (position[p] > interior[1]) {
+      length = position.back() - interior[1];
+      s = (position[p] - interior[1]) / length;
+    }
+    const double a = strength / length * s * s * dt / 2;
     decay[p] = (1 - a) / (1 + a);
     gain[p] = 1 / (1 + a);
   }
@@ -181,19 +186,17 @@ void WaveEngine<T>::set_time_step(double dt) {
   keep_.clear();
   for (const double rate : rates_) keep_.push_back(static_cast<T>(std::exp(-rate * dt)));
   const GllRule rule(N_);
+  const double strength = boundary_.sponge_strength * boundary_.sponge_speed;
   std::vector<double> decay, gain;
-  make_sponge(node_positions(rule, lattice_.x), lattice_.interior_x(), boundary_.sponge_damping, dt, decay,
-              gain);
+  make_sponge(node_positions(rule, lattice_.x), lattice_.interior_x(), strength, dt, decay, gain);
   decay_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
   gain_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
   for (int X = 0; X < nX_; ++X) {
     decay_x_[X % N_ * stride_ + X / N_] = static_cast<T>(decay[X]);
     gain_x_[X % N_ * stride_ + X / N_] = static_cast<T>(gain[X]);
   }
-  make_sponge(node_positions(rule, lattice_.y), lattice_.interior_y(), boundary_.sponge_damping, dt, decay_y_,
-              gain_y_);
-  make_sponge(node_positions(rule, lattice_.z), lattice_.interior_z(), boundary_.sponge_damping, dt, decay_z_,
-              gain_z_);
+  make_sponge(node_positions(rule, lattice_.y), lattice_.interior_y(), strength, dt, decay_y_, gain_y_);
+  make_sponge(node_positions(rule, lattice_.z), lattice_.interior_z(), strength, dt, decay_z_, gain_z_);
 }
 
 template <class T>

@@ -19,7 +19,10 @@ struct EngineMaterial {
 
 /// What absorbs waves at the sides and the bottom.
 struct EngineBoundary {
-  double sponge_damping = 120;     ///< [1/s] at the outer edge, rising quadratically from the inner edge
+  /// Damping at the outer edge of a sponge [1/s] = strength x speed / length of the sponge, rising from its inner
+  /// edge as the square of the distance: a wave of that speed loses strength / 6 nepers on its way out.
+  double sponge_strength = 10;
+  double sponge_speed = 0;         ///< [m/s] shear wave speed of the half-space; 0: no sponge
   bool dashpots = true;            ///< viscous dashpots and far-field springs on the outer faces
   std::array<double, 2> origin{};  ///< x, y [m] of the middle of the loads: the springs know their distance
 };

@@ -15,7 +15,8 @@ enum class DampingModel {
   none,
   stiffness_proportional,  ///< K (u + beta v), beta = damping / (pi f): ratio grows with frequency, small
                            ///< step
-  constant_ratio           ///< memory variables: ratio nearly constant over the band, step nearly as undamped
+  constant_ratio  ///< memory variables: ratio nearly constant from a tenth of the highest frequency to
+                  ///< it, step nearly as undamped; cs and cp hold at damping_frequency (relaxation.hpp)
 };
 
 /// What the solver may be told; the defaults suit railway vibration.
@@ -31,9 +32,10 @@ struct SolverOptions {
                               ///< are brought in smoothly; not part of the output
   int sponge_elements = 8;    ///< see LatticeOptions
   double sponge_growth = 1.15;
-  double sponge_damping = 120;  ///< [1/s] mass-proportional damping at the outer edge of the sponge
-  bool dashpots = true;         ///< viscous dashpots (Stacey) and far-field springs on the outer faces
-  double memory_limit = 0;      ///< [byte]; 0: 0.8 of the memory of the machine
+  double sponge_strength =
+      12;                   ///< damping at the outer edge of the sponge x its length / cs of the half-space
+  bool dashpots = true;     ///< viscous dashpots (Stacey) and far-field springs on the outer faces
+  double memory_limit = 0;  ///< [byte]; 0: 0.8 of the memory of the machine
 };
 
 /// What a run will cost, known before it starts.

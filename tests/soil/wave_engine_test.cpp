@@ -29,7 +29,7 @@ std::vector<EngineMaterial> two_materials() {
 
 EngineBoundary free_boundary() {
   EngineBoundary boundary;
-  boundary.sponge_damping = 0;
+  boundary.sponge_speed = 0;
   boundary.dashpots = false;
   return boundary;
 }
@@ -171,6 +171,7 @@ TEST(WaveEngine, LosesEnergyMonotonicallyInTheSpongeAndTheDashpots) {
   lattice.sponge_y = {1, 1};
   lattice.sponge_z = {1, 0};
   EngineBoundary boundary;
+  boundary.sponge_speed = 100;
   WaveEngine<double> engine(lattice, two_materials(), {}, boundary, 1);
   const double dt = 0.9 * engine.compute_stable_step();
   engine.set_time_step(dt);

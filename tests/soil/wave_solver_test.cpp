@@ -1,0 +1,203 @@
+#include "soil/wave_solver.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "easydyn/error.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Small coarse layered site: 1 m of 100 m/s on 200 m/s, 20 Hz.
+Site small_site() {
+  Site site;
+  Layer top, bottom;
+  top.name = "top";
+  top.thickness = 1;
+  top.density = 1800;
+  top.cs = 100;
+  top.cp = 200;
+  bottom = top;
+  bottom.name = "bottom";
+  bottom.cs = 200;
+  bottom.cp = 400;
+  site.layers = {top, bottom};
+  site.receivers = {{"near", {1.3, 2.1, 0}}, {"deep", {-0.7, 3.2, -0.8}}};
+  site.highest_frequency = 20;
+  site.points_per_wavelength = 4;
+  site.margin = 1;
+  site.taper_length = 0;
+  site.duration = 0.15;
+  return site;
+}
+
+/// sin^2 pulse of 0.1 s on each footprint.
+SurfaceLoads pulse(std::vector<Footprint> footprints) {
+  SurfaceLoads loads;
+  loads.footprints = std::move(footprints);
+  loads.time = Eigen::VectorXd::LinSpaced(101, 0, 0.1);
+  loads.force.resize(101, static_cast<Eigen::Index>(loads.footprints.size()));
+  for (int i = 0; i < 101; ++i) loads.force.row(i).setConstant(1e4 * std::pow(std::sin(M_PI * i / 100.0), 2));
+  return loads;
+}
+
+SolverOptions small_options() {
+  SolverOptions options;
+  options.degree = 3;
+  options.sponge_elements = 3;
+  options.double_precision = true;
+  options.output_step = 2e-3;
+  return options;
+}
+
+double relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+TEST(WaveSolver, GivesTheSameMotionInTheHalfModel) {
+  Site site = small_site();
+  site.receivers.push_back({"mirror", {-0.7, -3.2, -0.8}});
+  const SurfaceLoads loads = pulse({{0.2, 0, 0.6, 2.4}});
+  SolverOptions options = small_options();
+  // The lattices must match: make the full one symmetric with an even number of elements across.
+  site.margin = 0.5;
+  const GroundMotion half = WaveSolver(site, loads, options).run();
+  options.half_model = false;
+  WaveSolver full_solver(site, loads, options);
+  const Lattice& lattice = full_solver.lattice();
+  ASSERT_EQ(lattice.ny() % 2, 0);
+  ASSERT_NEAR(lattice.y.front(), -lattice.y.back(), 1e-12);
+  const GroundMotion full = full_solver.run();
+  EXPECT_LT(relative_difference(half.vx, full.vx), 1e-10);
+  EXPECT_LT(relative_difference(half.vy, full.vy), 1e-10);
+  EXPECT_LT(relative_difference(half.vz, full.vz), 1e-10);
+  EXPECT_LT(relative_difference(half.footprint_displacement, full.footprint_displacement), 1e-10);
+  EXPECT_LT(relative_difference(2 * half.energy, full.energy), 1e-10);
+  EXPECT_LT((half.vy.col(1) + half.vy.col(2)).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(WaveSolver, IsReciprocal) {
+  // Mean displacement of footprint 2 under a load on 1 = that of 1 under the same load on 2.
+  for (const bool double_precision : {true, false}) {
+    Site site = small_site();
+    for (Layer& layer : site.layers) layer.damping = 0.03;
+    SolverOptions options = small_options();
+    options.double_precision = double_precision;
+    options.half_model = false;
+    SurfaceLoads loads = pulse({{-1.1, 0.4, 0.6, 0.8}, {1.4, -0.9, 0.5, 0.7}});
+    const Eigen::MatrixXd force = loads.force;
+    loads.force.col(1).setZero();
+    const Eigen::VectorXd there = WaveSolver(site, loads, options).run().footprint_displacement.col(1);
+    loads.force = force;
+    loads.force.col(0).setZero();
+    const Eigen::VectorXd back = WaveSolver(site, loads, options).run().footprint_displacement.col(0);
+    EXPECT_LT(relative_difference(there, back), double_precision ? 1e-10 : 1e-5);
+  }
+}
+
+TEST(WaveSolver, NeedsNoDoublePrecisionForTheField) {
+  const Site site = small_site();
+  const SurfaceLoads loads = pulse({{0.2, 0, 0.6, 2.4}});
+  SolverOptions options = small_options();
+  const GroundMotion exact = WaveSolver(site, loads, options).run();
+  options.double_precision = false;
+  const GroundMotion single = WaveSolver(site, loads, options).run();
+  EXPECT_LT(relative_difference(single.vz, exact.vz), 1e-3);
+  EXPECT_LT(relative_difference(single.footprint_displacement, exact.footprint_displacement), 1e-3);
+}
+
+TEST(WaveSolver, LosesEnergyOnceTheLoadStops) {
+  Site site = small_site();
+  site.duration = 0.5;
+  const GroundMotion motion = WaveSolver(site, pulse({{0, 0, 0.6, 2.4}}), small_options()).run();
+  for (Eigen::Index i = 52; i < motion.energy.size(); ++i)
+    EXPECT_LE(motion.energy(i), motion.energy(i - 1) * (1 + 1e-12)) << "t = " << motion.time(i);
+}
+
+TEST(WaveSolver, DampsByTheStatedRatio) {
+  // Plane waves decay by exp(-xi k x) in amplitude; here: damping lowers the motion, both models alike at the
+  // damping frequency (pulse of 0.1 s: about 10 Hz).
+  Site site = small_site();
+  site.receivers = {{"far", {6, 0, 0}}};
+  site.damping_frequency = 10;
+  site.duration = 0.25;
+  const SurfaceLoads loads = pulse({{0, 0, 0.6, 2.4}});
+  SolverOptions options = small_options();
+  const auto peak = [&](DampingModel model, double ratio) {
+    for (Layer& layer : site.layers) layer.damping = ratio;
+    options.damping = model;
+    return WaveSolver(site, loads, options).run().vz.cwiseAbs().maxCoeff();
+  };
+  const double none = peak(DampingModel::none, 0.05);
+  const double constant = peak(DampingModel::constant_ratio, 0.05);
+  const double proportional = peak(DampingModel::stiffness_proportional, 0.05);
+  EXPECT_LT(constant, 0.97 * none);
+  EXPECT_LT(proportional, 0.97 * none);
+  EXPECT_NEAR(constant, proportional, 0.05 * none);
+}
+
+TEST(WaveSolver, SaysWhatItWillCost) {
+  WaveSolver solver(small_site(), pulse({{0, 0, 0.6, 2.4}}), small_options());
+  const RunSummary summary = solver.compute_summary();
+  EXPECT_EQ(summary.dofs, 3 * summary.nodes);
+  EXPECT_EQ(summary.elements, solver.lattice().elements());
+  EXPECT_EQ(summary.steps, solver.steps());
+  EXPECT_NEAR(summary.time_step * static_cast<double>(summary.steps - 1), 0.15, 2e-3);
+  EXPECT_GT(summary.expected_time, 0);
+  // Asking does not disturb the run.
+  const GroundMotion asked = solver.run();
+  const GroundMotion fresh = WaveSolver(small_site(), pulse({{0, 0, 0.6, 2.4}}), small_options()).run();
+  EXPECT_EQ(asked.vz, fresh.vz);
+}
+
+TEST(WaveSolver, ReportsProgressToTheEnd) {
+  double last = 0;
+  WaveSolver solver(small_site(), pulse({{0, 0, 0.6, 2.4}}), small_options());
+  solver.run([&](double fraction) {
+    EXPECT_GE(fraction, last);
+    last = fraction;
+  });
+  EXPECT_EQ(last, 1.0);
+}
+
+TEST(WaveSolver, NamesWhatIsOutOfRange) {
+  const SurfaceLoads loads = pulse({{0, 0, 0.6, 2.4}});
+  Site site = small_site();
+  site.receivers = {{"cellar", {0, 2, 1.5}}};
+  EXPECT_THAT([&] { WaveSolver(site, loads, small_options()); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("cellar"), HasSubstr("1.5"), HasSubstr("z <= 0"))));
+  site = small_site();
+  site.layers[1].cs = -3;
+  EXPECT_THAT([&] { WaveSolver(site, loads, small_options()); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("bottom"), HasSubstr("-3"))));
+  SolverOptions options = small_options();
+  options.memory_limit = 1e5;
+  EXPECT_THAT([&] { WaveSolver(small_site(), loads, options); },
+              ThrowsMessage<ModelError>(HasSubstr("GB of memory")));
+  EXPECT_THAT(
+      [&] {
+        WaveSolver(small_site(), pulse({{0, 0.5, 1, 1}}), small_options());
+      },
+      ThrowsMessage<ModelError>(HasSubstr("half model")));
+  SurfaceLoads broken = loads;
+  broken.force(3, 0) = std::nan("");
+  EXPECT_THAT([&] { WaveSolver(small_site(), broken, small_options()); },
+              ThrowsMessage<ModelError>(HasSubstr("not finite")));
+}
+
+TEST(WaveSolver, StopsWhenTheMotionIsNoLongerFinite) {
+  SurfaceLoads loads = pulse({{0, 0, 0.6, 2.4}});
+  loads.force *= 1e40;  // overflows single precision
+  SolverOptions options = small_options();
+  options.double_precision = false;
+  EXPECT_THAT([&] { WaveSolver(small_site(), loads, options).run(); },
+              ThrowsMessage<SolverError>(AllOf(HasSubstr("no longer finite"), HasSubstr("step"))));
+}
+
+}  // namespace
+}  // namespace easydyn::soil

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "soil/wave_solver.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+TEST(StaticLoad, DoesNotDriftWhenHeldForTwentySeconds) {
+  // Raised over 0.5 s (the preload) and held; coarse and soft so that the step is long. From 1 s on, when the
+  // waves of the ramp have left, the deflection must stay.
+  for (const double nu : {0.33, 0.45}) {
+    Site site;
+    Layer ground;
+    ground.density = 1800;
+    ground.cs = 200;
+    ground.cp = 200 * std::sqrt((2 - 2 * nu) / (1 - 2 * nu));
+    site.layers = {ground};
+    site.receivers = {{"near", {2, 3, 0}}};
+    site.highest_frequency = 25;
+    site.points_per_wavelength = 4;
+    site.margin = 1;
+    site.duration = 20;
+    SurfaceLoads loads;
+    loads.footprints = {{0, 0, 6, 6}};  // as large as an element: the mesh resolves it
+    loads.time = Eigen::VectorXd::LinSpaced(2, 0, 20);
+    loads.force = Eigen::MatrixXd::Constant(2, 1, 1e4);
+    SolverOptions options;
+    options.degree = 3;
+    options.sponge_elements = 4;
+    options.output_step = 0.1;
+    const GroundMotion motion = WaveSolver(site, loads, options).run();
+    const Eigen::VectorXd w = motion.footprint_displacement.col(0);
+    const Eigen::Index nt = w.size();
+    const double drift = (w.tail(nt - 10).array() - w(10)).abs().maxCoeff() / w(nt - 1);
+    EXPECT_LT(drift, 0.01) << "nu " << nu;
+    EXPECT_LT(motion.vz.bottomRows(nt / 2).cwiseAbs().maxCoeff(), 1e-3 * w(nt - 1))
+        << "nu " << nu;  // at rest
+    // Uniform pressure p on a square of side a: mean displacement 0.946 (1 - nu^2) p a / E (Timoshenko and
+    // Goodier, recalled). The springs of the outer faces and the mesh hold it within some percent.
+    const double E = 2 * 1800 * 200.0 * 200 * (1 + nu), exact = 0.946 * (1 - nu * nu) * 1e4 / 6 / E;
+    EXPECT_NEAR(w(nt - 1), exact, 0.1 * exact) << "nu " << nu;
+    std::printf("nu %.2f: drift %.2e, displacement / exact %.4f, %ld steps of %ld dof\n", nu, drift,
+                w(nt - 1) / exact, WaveSolver(site, loads, options).steps(),
+                WaveSolver(site, loads, options).lattice().dofs());
+  }
+}
+
+}  // namespace
+}  // namespace easydyn::soil
