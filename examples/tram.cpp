@@ -13,7 +13,7 @@
 // Run: ./run tram
 // Prints: vehicle weight                                           358.06 kN
 // Prints: static sum of the ballast reactions / weight                  1
-// Prints: largest ballast reaction                                 53.562 kN
+// Prints: largest ballast reaction                                 53.580 kN
 // Reference: G. Kouroussis, O. Verlinden, Prediction of railway ground vibrations: accuracy of a coupled
 // lumped mass model for representing the track/soil interaction, Soil Dyn. Earthq. Eng. 69, 2015.
 
@@ -111,7 +111,7 @@ int run(const Options& options, const std::string& command) {
   const double v = options.speed * km / h;
   track::TrackData data = track::t2000_like_track();
   data.foundation = choose_foundation(options.foundation, data.foundation);
-  const double loaded = 16 * m;     // the ground is loaded from -16 m to 16 m about the joint
+  const double loaded = 14 * m;     // the ground is loaded from -14 m to 14 m about the joint
   const double approach = 1.5 * m;  // of the first wheel to the loaded part, and of the last one away from it
   const double margin = 10 * m;     // of track beyond the wheels, before its absorbing ends
 
