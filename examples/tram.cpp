@@ -134,8 +134,8 @@ int run(const Options& options, const std::string& command) {
   passage_options.duration = -2 * x0 / v;
   passage_options.step = options.time_step;
   passage_options.output_step = std::max(1.0, std::round(5e-4 / options.time_step)) * options.time_step;
-  passage_options.first_sleeper_x = -loaded;
-  passage_options.last_sleeper_x = loaded;
+  passage_options.first_sleeper_x = x0 - reach;  // recorded wherever a wheel stands
+  passage_options.last_sleeper_x = -passage_options.first_sleeper_x;
   fmt::print("tram: {} at {:.0f} km/h, step of {} mm, foundation {}\n", vehicle.label(), options.speed,
              options.step_height, track::kind_of(data.foundation));
   fmt::print("tram: {} bays of track, {} coordinates, {:.2f} s in steps of {} s\n", track_model.bays(),
@@ -185,10 +185,14 @@ int run(const Options& options, const std::string& command) {
 
   soil::SurfaceLoads loads;
   loads.time = passage.time;
-  loads.force = passage.ballast_reaction;
-  for (double x : passage.sleeper_x)
+  std::vector<Eigen::Index> handed_over;
+  for (Eigen::Index j = 0; j < passage.sleeper_x.size(); ++j) {
+    if (std::abs(passage.sleeper_x[j]) > loaded) continue;
+    handed_over.push_back(j);
     loads.footprints.push_back(
-        {.x = x, .y = 0, .length = data.footprint_length, .width = data.footprint_width});
+        {.x = passage.sleeper_x[j], .y = 0, .length = data.footprint_length, .width = data.footprint_width});
+  }
+  loads.force = passage.ballast_reaction(Eigen::all, handed_over);
   soil::write_surface_loads(options.output / "surface_loads.h5", loads, provenance);
   fmt::print("tram: wrote results.h5, surface_loads.h5 and channels.csv to {}\n", options.output.string());
   return 0;

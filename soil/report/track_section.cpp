@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
@@ -128,21 +129,29 @@ void add_ballast_reactions(visu::Report& report, const ResultReader& track, cons
   report.add_charts({std::move(history), std::move(envelope)});
 }
 
+// The calmest bodies (those that carry people) and the most shaken ones (on the rail) need scales of their own.
 void add_vehicle(visu::Report& report, const ResultReader& track, const VectorXd& time) {
   if (!track.has("/vehicle/acceleration")) return;
   const MatrixXd acceleration = track.read_matrix("/vehicle/acceleration");
   if (acceleration.cols() == 0) return;
   const auto names = names_at(track, "/vehicle/bodies");
+  std::vector<Index> by_peak(static_cast<std::size_t>(acceleration.cols()));
+  std::iota(by_peak.begin(), by_peak.end(), Index(0));
+  const VectorXd peak = acceleration.cwiseAbs().colwise().maxCoeff().transpose();
+  std::stable_sort(by_peak.begin(), by_peak.end(), [&](Index i, Index j) { return peak[i] < peak[j]; });
+
+  const std::size_t curves = std::min<std::size_t>(3, by_peak.size());
+  const auto chart_of = [&](const std::string& title, std::size_t first) {
+    visu::Chart chart{.title = title, .x = {"time", "s"}, .y = {"acceleration", "m/s²"}, .series = {}};
+    for (std::size_t i = first; i < first + curves; ++i)
+      chart.series.push_back({name_of(names, by_peak[i], "body"), time, acceleration.col(by_peak[i])});
+    return chart;
+  };
   report.add_subsection("Vehicle");
-  visu::Chart chart{.title = "Vertical acceleration of the bodies",
-                    .x = {"time", "s"},
-                    .y = {"acceleration", "m/s²"},
-                    .series = {}};
-  const auto chosen = spread(acceleration.cols(), most_curves);
-  for (const Index b : chosen) chart.series.push_back({name_of(names, b, "body"), time, acceleration.col(b)});
-  if (Index(chosen.size()) < acceleration.cols())
-    chart.caption = fmt::format("{} of {} bodies.", chosen.size(), acceleration.cols());
-  report.add_chart(std::move(chart));
+  std::vector<visu::Chart> charts = {chart_of("Vertical acceleration, calmest bodies", 0)};
+  if (by_peak.size() > curves)
+    charts.push_back(chart_of("Vertical acceleration, most shaken bodies", by_peak.size() - curves));
+  report.add_charts(std::move(charts));
 }
 
 void add_energies(visu::Report& report, const ResultReader& track, const VectorXd& time) {
