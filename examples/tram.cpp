@@ -11,9 +11,9 @@
 // contact; a smooth start in the quasi-static motion; the ballast reactions handed to the program `soil`.
 // `./run tram` goes on with the ground and the report.
 // Run: ./run tram
-// Prints: vehicle weight                                           358.06 kN
+// Prints: vehicle weight                                            358.1 kN
 // Prints: static sum of the ballast reactions / weight                  1
-// Prints: largest ballast reaction                                 53.580 kN
+// Prints: largest ballast reaction                                  53.58 kN
 // Reference: G. Kouroussis, O. Verlinden, Prediction of railway ground vibrations: accuracy of a coupled
 // lumped mass model for representing the track/soil interaction, Soil Dyn. Earthq. Eng. 69, 2015.
 
@@ -75,12 +75,14 @@ class TramOnTrack : public System {
 };
 
 // The foundation asked for; the simpler ones keep the constants of the CLM and drop what they do not have.
-track::Foundation choose_foundation(const std::string& name, const track::Foundation& clm) {
-  const track::Clm c = track::as_clm(clm);
+track::Foundation choose_foundation(const std::string& name, const track::Foundation& bundled) {
   if (name == "rigid") return track::RigidGround{};
+  if (name == "clm") return bundled;
+  track::Clm c = track::as_clm(bundled);
+  for (Sourced* constant : {&c.m_f, &c.k_f, &c.d_f})
+    constant->source = "as in the fitted CLM, its coupling dropped: not a fit of its own";
   if (name == "winkler") return track::Winkler{c.k_f, c.d_f};
-  if (name == "winkler-mass") return track::WinklerMass{c.m_f, c.k_f, c.d_f};
-  return clm;
+  return track::WinklerMass{c.m_f, c.k_f, c.d_f};
 }
 
 // Tram and track as an animated scene, at about 25 pictures per second of a slow-motion replay.
@@ -136,8 +138,13 @@ int run(const Options& options, const std::string& command) {
   passage_options.output_step = std::max(1.0, std::round(5e-4 / options.time_step)) * options.time_step;
   passage_options.first_sleeper_x = x0 - reach;  // recorded wherever a wheel stands
   passage_options.last_sleeper_x = -passage_options.first_sleeper_x;
-  fmt::print("tram: {} at {:.0f} km/h, step of {} mm, foundation {}\n", vehicle.label(), options.speed,
-             options.step_height, track::kind_of(data.foundation));
+  const std::string description =
+      fmt::format("{} at {:g} km/h over a rail step of {:g} mm on {}, foundation {}", vehicle.label(),
+                  options.speed, options.step_height, data.label(), track::kind_of(data.foundation));
+  fmt::print("tram: {}\n", description);
+  std::filesystem::create_directories(options.output);  // before the work, in case it cannot be
+  for (const std::string& unusual : vehicles::unusual_values(vehicle))
+    fmt::print("tram: warning: {}\n", unusual);
   fmt::print("tram: {} bays of track, {} coordinates, {:.2f} s in steps of {} s\n", track_model.bays(),
              system.size(), passage_options.duration, options.time_step);
   results::Progress progress("passage");
@@ -151,6 +158,10 @@ int run(const Options& options, const std::string& command) {
   for (std::size_t w = 0; w < system.contacts.size(); ++w)
     peak_ratio = std::max(peak_ratio, passage.largest_contact_force[static_cast<Eigen::Index>(w)] /
                                           system.contacts[w].static_load());
+  const Eigen::VectorXd energy =
+      passage.kinetic_energy + passage.potential_energy + passage.dissipated_energy - passage.supplied_energy;
+  const double energy_imbalance =
+      (energy.array() - energy[0]).abs().maxCoeff() / passage.supplied_energy.cwiseAbs().maxCoeff();
   const std::vector<track::SummaryFigure> summary = {
       {"vehicle weight", weight / kN, "kN"},
       {"static sum of the ballast reactions / weight", passage.static_ballast_reaction / weight, ""},
@@ -158,9 +169,14 @@ int run(const Options& options, const std::string& command) {
       {"largest dynamic load factor of a wheel pair", peak_ratio, ""},
       {"largest rail deflection", passage.rail_deflection.maxCoeff() / mm, "mm"},
       {"largest ballast reaction", passage.ballast_reaction.maxCoeff() / kN, "kN"},
+      {"smallest ballast reaction", passage.ballast_reaction.minCoeff() / kN, "kN"},
+      {"longest loss of contact of a wheel pair", passage.contact_loss_time.maxCoeff() / ms, "ms"},
+      {"energy imbalance / work supplied", energy_imbalance, ""},
   };
   for (const auto& figure : summary)
-    fmt::print("  {:<52} {:10.5g} {}\n", figure.name, figure.value, figure.unit);
+    fmt::print("  {:<52} {:10.4g} {}\n", figure.name, figure.value, figure.unit);
+
+  for (const std::string& warning : passage.warnings) fmt::print("tram: warning: {}\n", warning);
 
   // 5. Files.
   std::vector<Parameter> parameters = vehicles::parameters(vehicle);
@@ -178,8 +194,7 @@ int run(const Options& options, const std::string& command) {
       .command = command,
       .convention =
           "x along the track, y left, z up; track displacements and ground loads positive downward"};
-  std::filesystem::create_directories(options.output);
-  track::write_passage(options.output / "results.h5", passage, parameters, summary,
+  track::write_passage(options.output / "results.h5", passage, description, parameters, summary,
                        visu::to_json(make_scene(passage, system, x0, v)), provenance);
   track::write_passage_channels(options.output / "channels.csv", passage, 0);
 

@@ -24,6 +24,11 @@ class PassageRecorder {
       if (model.sleeper_x(j) >= options.first_sleeper_x - 1e-9 &&
           model.sleeper_x(j) <= options.last_sleeper_x + 1e-9)
         sleepers_.push_back(j);
+    if (sleepers_.empty())
+      throw ModelError(
+          fmt::format("passage: no sleeper stands from {} m to {} m (first_sleeper_x, last_sleeper_x); "
+                      "the track has them from {} m to {} m",
+                      options.first_sleeper_x, options.last_sleeper_x, model.begin(), model.end()));
     const auto ns = static_cast<Index>(sleepers_.size());
     const auto nw = static_cast<Index>(contacts.size()), nb = static_cast<Index>(system.bodies().size());
     p_.time.resize(rows);
@@ -112,6 +117,20 @@ class PassageRecorder {
   Passage p_;
 };
 
+// The ballast is linear and holds less pull than the weight above it.
+void warn_of_uplift(Passage& p, const TrackData& data) {
+  constexpr double g = 9.81;
+  p.track_weight = g * (data.sleeper_mass + data.rails * data.rail.mass_per_length * data.sleeper_spacing);
+  Index row = 0, sleeper = 0;
+  const double least = p.ballast_reaction.minCoeff(&row, &sleeper);
+  if (least >= -p.track_weight) return;
+  p.warnings.push_back(
+      fmt::format("uplift: the ballast at x = {:.2f} m pulls with {:.2f} kN at t = {:.3f} s, more than the "
+                  "weight of track above "
+                  "it ({:.2f} kN); a real sleeper would lift off, the linear ballast does not",
+                  p.sleeper_x[sleeper], -1e-3 * least, p.time[row], 1e-3 * p.track_weight));
+}
+
 }  // namespace
 
 Passage compute_passage(System& system, const FlexibleTrack& track,
@@ -143,8 +162,10 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
     recorder.record(integrator.state());
     if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));
   }
-  recorder.passage().statistics = integrator.statistics();
-  return std::move(recorder.passage());
+  Passage& passage = recorder.passage();
+  passage.statistics = integrator.statistics();
+  warn_of_uplift(passage, track.model().data());
+  return std::move(passage);
 }
 
 }  // namespace easydyn::track

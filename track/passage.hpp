@@ -16,7 +16,7 @@ struct PassageOptions {
   double step = 1e-4;              ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
   double output_step = 5e-4;       ///< [s], a multiple of the step
   double first_sleeper_x = 0;      ///< sleepers from here ...
-  double last_sleeper_x = 0;       ///< ... to here [m] are recorded
+  double last_sleeper_x = 0;       ///< ... to here [m] are recorded; at least one must stand there
   double start_difference = 2e-3;  ///< of the quasi-static start [s]
 };
 
@@ -41,6 +41,8 @@ struct Passage {
   Eigen::VectorXd kinetic_energy, potential_energy;    ///< nt [J]
   Eigen::VectorXd dissipated_energy, supplied_energy;  ///< nt [J], since the start
   double static_ballast_reaction = 0;  ///< of all sleepers together, at rest at the place of the start [N]
+  double track_weight = 0;             ///< rails and sleeper per spacing, which holds the ballast down [N]
+  std::vector<std::string> warnings;   ///< where a result leaves the range of the model
   Newmark::Statistics statistics;
 };
 

@@ -29,7 +29,7 @@ std::string to_json(const std::vector<SummaryFigure>& summary) {
 
 }  // namespace
 
-void write_passage(const std::filesystem::path& path, const Passage& p,
+void write_passage(const std::filesystem::path& path, const Passage& p, const std::string& description,
                    const std::vector<Parameter>& parameters, const std::vector<SummaryFigure>& summary,
                    const std::string& scene, const results::Provenance& provenance) {
   results::ResultFile file(path, provenance);
@@ -67,8 +67,11 @@ void write_passage(const std::filesystem::path& path, const Passage& p,
   file.write_vector("/energy/supplied", p.supplied_energy,
                     {"J", "work of the drive since the start", "scalar"});
 
+  file.write_text("/description", description, "what was run, one sentence");
   file.write_text("/parameters", to_json(parameters), "JSON: group, name, value, unit, source");
   file.write_text("/summary", to_json(summary), "JSON: name, value, unit");
+  if (!p.warnings.empty())
+    file.write_names("/warnings", p.warnings, "where a result leaves the range of the model");
   if (!scene.empty()) file.write_text("/scene", scene, "JSON of the animated scene");
   file.commit();
 }

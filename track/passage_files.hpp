@@ -20,9 +20,10 @@ struct SummaryFigure {
 
 /// Writes `results.h5` of a passage: every channel, parameters with provenance, summary, scene;
 /// docs/formats.md.
-/// @param scene  JSON of the animated scene (easydyn/visu/scene.hpp), may be empty
+/// @param description  what was run, one sentence
+/// @param scene        JSON of the animated scene (easydyn/visu/scene.hpp), may be empty
 /// @throws InputError if the file cannot be written, ModelError on a value that is not finite
-void write_passage(const std::filesystem::path& path, const Passage& passage,
+void write_passage(const std::filesystem::path& path, const Passage& passage, const std::string& description,
                    const std::vector<Parameter>& parameters, const std::vector<SummaryFigure>& summary,
                    const std::string& scene, const results::Provenance& provenance);
 

@@ -94,12 +94,22 @@ void validate(const RailVehicle& vehicle) {
     require_finite(object, "x", body.x, "m");
     require_positive(object, "length", body.length, "m");
   }
+  std::set<std::string> rear_bodies;
   for (const Hinge& hinge : vehicle.hinges) {
     require_new(hinge.name);
-    require_finite(part(vehicle, "hinge", hinge.name), "x", hinge.x, "m");
-    if (vehicle.body_index(hinge.front_body) == vehicle.body_index(hinge.rear_body))
-      throw ModelError(fmt::format("{}: joins body \"{}\" to itself, must be two bodies",
-                                   part(vehicle, "hinge", hinge.name), hinge.front_body));
+    const std::string object = part(vehicle, "hinge", hinge.name);
+    require_finite(object, "x", hinge.x, "m");
+    if (hinge.front_body == hinge.rear_body)
+      throw ModelError(
+          fmt::format("{}: joins body \"{}\" to itself, must be two bodies", object, hinge.front_body));
+    if (vehicle.body_index(hinge.front_body) >= vehicle.body_index(hinge.rear_body))
+      throw ModelError(
+          fmt::format("{}: front body \"{}\" must stand before rear body \"{}\" in the list of bodies",
+                      object, hinge.front_body, hinge.rear_body));
+    if (!rear_bodies.insert(hinge.rear_body).second)
+      throw ModelError(
+          fmt::format("{}: body \"{}\" is the rear body of another hinge already, must be of one", object,
+                      hinge.rear_body));
   }
   for (const RunningGear& gear : vehicle.gears) {
     require_new(gear.name);

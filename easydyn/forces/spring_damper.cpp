@@ -4,6 +4,7 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/mbs/motion_tree.hpp"
+#include "easydyn/require.hpp"
 
 namespace easydyn {
 
@@ -11,12 +12,10 @@ using Eigen::Vector3d;
 
 SpringDamper::SpringDamper(std::string name, double stiffness, double damping, double free_length)
     : name_(std::move(name)), stiffness_(stiffness), damping_(damping), free_length_(free_length) {
-  if (!(stiffness >= 0))
-    throw ModelError(fmt::format("spring \"{}\": k = {} N/m, must be >= 0", name_, stiffness));
-  if (!(damping >= 0))
-    throw ModelError(fmt::format("spring \"{}\": d = {} N s/m, must be >= 0", name_, damping));
-  if (!(free_length >= 0))
-    throw ModelError(fmt::format("spring \"{}\": free length = {} m, must be >= 0", name_, free_length));
+  const std::string object = "spring \"" + name_ + "\"";
+  require_not_negative(object, "stiffness", stiffness, "N/m");
+  require_not_negative(object, "damping", damping, "N s/m");
+  require_not_negative(object, "free length", free_length, "m");
 }
 
 void SpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,

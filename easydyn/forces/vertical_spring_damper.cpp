@@ -6,6 +6,7 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/mbs/motion_tree.hpp"
+#include "easydyn/require.hpp"
 
 namespace easydyn {
 
@@ -14,13 +15,11 @@ using Eigen::Vector3d;
 VerticalSpringDamper::VerticalSpringDamper(std::string name, double stiffness, double damping, double height,
                                            double preload)
     : name_(std::move(name)), stiffness_(stiffness), damping_(damping), height_(height), preload_(preload) {
-  if (!(stiffness >= 0))
-    throw ModelError(fmt::format("spring \"{}\": k = {} N/m, must be >= 0", name_, stiffness));
-  if (!(damping >= 0))
-    throw ModelError(fmt::format("spring \"{}\": d = {} N s/m, must be >= 0", name_, damping));
-  if (!std::isfinite(height) || !std::isfinite(preload))
-    throw ModelError(
-        fmt::format("spring \"{}\": height {} m and preload {} N must be finite", name_, height, preload));
+  const std::string object = "spring \"" + name_ + "\"";
+  require_not_negative(object, "stiffness", stiffness, "N/m");
+  require_not_negative(object, "damping", damping, "N s/m");
+  require_finite(object, "height", height, "m");
+  require_finite(object, "preload", preload, "N");
 }
 
 void VerticalSpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,

@@ -122,7 +122,9 @@ inline Expr tanh(const Expr& a) {
 /// a^p for a constant exponent.
 inline Expr pow(const Expr& a, double p) {
   const double x = a.value();
-  return Expr::apply(a, std::pow(x, p), p * std::pow(x, p - 1), p * (p - 1) * std::pow(x, p - 2));
+  const double f1 = p == 0 ? 0 : p * std::pow(x, p - 1);  // no 0 * infinity at x = 0
+  const double f2 = p == 0 || p == 1 ? 0 : p * (p - 1) * std::pow(x, p - 2);
+  return Expr::apply(a, std::pow(x, p), f1, f2);
 }
 /// Angle of the point (x, y), continuous through all four quadrants (jump at the negative x axis).
 Expr atan2(const Expr& y, const Expr& x);

@@ -53,8 +53,13 @@ void MotionTree::add_body(const Inertia& inertia, const Eigen::Matrix3d& R, cons
 }
 
 void MotionTree::compute_velocities() {
-  // The common point: near the mechanism, the same for the same state.
-  O_ = bodies_.empty() ? Vector3d::Zero() : bodies_.front().p;
+  // The common point: the first body that moves. It depends on the state alone.
+  O_.setZero();
+  for (const Carried& b : bodies_) {
+    if (b.motion < 0) continue;
+    O_ = b.p;
+    break;
+  }
 
   for (int i = 0; i < size_; ++i) {
     Joint& k = joints_[static_cast<std::size_t>(i)];

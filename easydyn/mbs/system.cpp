@@ -214,6 +214,12 @@ void System::evaluate(const State& state) {
 }
 
 Port System::touch(const LinearStructure& structure, const PortShape& shape) {
+  if (!port_motion_)
+    throw ModelError(fmt::format("structure \"{}\" can be touched inside forces() only", structure.name()));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i)
+    if (shape.index[i] < 0 || shape.index[i] >= structure.size())
+      throw ModelError(fmt::format("structure \"{}\" is touched at coordinate {}, must be 0 to {}",
+                                   structure.name(), shape.index[i], structure.size() - 1));
   for (std::size_t k = 0; k < structures_.size(); ++k) {
     if (structures_[k].get() != &structure) continue;
     ports_.push_back({static_cast<int>(k), shape, (*port_motion_)(static_cast<int>(k), shape), 0.0});

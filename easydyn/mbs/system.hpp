@@ -46,7 +46,8 @@ class System {
   Coordinate coordinate(std::string name, double initial = 0, double initial_rate = 0);
   Body& body(std::string name, const Inertia& inertia);
   LinearStructure& structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K);
-  /// Touches a structure at a place, inside forces(). Call in the same order at each evaluation.
+  /// Touches a structure at a place, inside forces(), in the same order at each evaluation. The port holds during
+  /// this evaluation. @throws ModelError outside forces(), or if a coordinate of the shape is out of range
   Port touch(const LinearStructure& structure, const PortShape& shape);
 
   // ---- what the system is, and its equations ----

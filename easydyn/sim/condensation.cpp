@@ -1,5 +1,7 @@
 #include "easydyn/sim/condensation.hpp"
 
+#include <cmath>
+
 namespace easydyn {
 
 using Eigen::VectorXd;
@@ -17,6 +19,8 @@ Condensation::Condensation(const System& system, double a_M, double a_C, double 
 }
 
 void Condensation::solve(const VectorXd& b, const std::vector<System::PortRecord>& ports) {
+  shapes_.clear();
+  for (const System::PortRecord& port : ports) shapes_.push_back(port.shape);
   for (std::size_t k = 0; k < factors_.size(); ++k) {
     port_of_[k].clear();
     for (std::size_t p = 0; p < ports.size(); ++p)
@@ -34,6 +38,18 @@ void Condensation::solve(const VectorXd& b, const std::vector<System::PortRecord
     }
     factors_[k].solve_in_place(X);
   }
+}
+
+bool Condensation::ports_moved(const std::vector<System::PortRecord>& ports) const {
+  constexpr double rounding = 1e-13;  // of shape functions of order 1
+  if (ports.size() != shapes_.size()) return true;
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    const PortShape &now = ports[p].shape, &then = shapes_[p];
+    if (now.count != then.count) return true;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(now.count); ++i)
+      if (now.index[i] != then.index[i] || !(std::abs(now.value[i] - then.value[i]) <= rounding)) return true;
+  }
+  return false;
 }
 
 void Condensation::set_bases(const VectorXd& q_base, double c_q, const VectorXd& qd_base, double c_v) {

@@ -26,6 +26,8 @@ class Condensation {
   /// Solves for y_free and G: b and the bases have the size of all structure coordinates together.
   /// @param ports  where the structures are touched
   void solve(const Eigen::VectorXd& b, const std::vector<System::PortRecord>& ports);
+  /// Whether these ports touch elsewhere than those of the last solve(): then G is not theirs.
+  bool ports_moved(const std::vector<System::PortRecord>& ports) const;
   /// How y enters coordinates and rates.
   void set_bases(const Eigen::VectorXd& q_base, double c_q, const Eigen::VectorXd& qd_base, double c_v);
   /// Motion of a port for given port forces F.
@@ -38,6 +40,7 @@ class Condensation {
   std::vector<BandedCholesky> factors_;
   std::vector<RightHandSides> X_;          // per structure: y_free, then the columns of its ports
   std::vector<std::vector<int>> port_of_;  // per structure: which port each column belongs to
+  std::vector<PortShape> shapes_;          // of the ports, as condensed
   std::vector<int> offset_;                // of each structure among the structure coordinates
   Eigen::VectorXd q_base_, qd_base_;
   double c_q_ = 0, c_v_ = 0;

@@ -72,9 +72,12 @@ Newmark::Newmark(System& system, State state, const NewmarkOptions& options)
   port_forces_.resize(static_cast<int>(system_.ports().size()));
   for (int p = 0; p < port_forces_.size(); ++p)
     port_forces_[p] = system_.ports()[static_cast<std::size_t>(p)].force;
-  scale_.resize(n_bodies_ + port_forces_.size());
-  scale_.head(n_bodies_).setConstant(acceleration_floor);
-  scale_.tail(port_forces_.size()).setConstant(force_floor);
+  floors_.resize(n_bodies_ + port_forces_.size());
+  floors_.head(n_bodies_).setConstant(acceleration_floor);
+  floors_.tail(port_forces_.size()).setConstant(force_floor);
+  scale_ = floors_;
+  scale_.head(n_bodies_) = scale_.head(n_bodies_).cwiseMax(state_.qdd.head(n_bodies_).cwiseAbs());
+  scale_.tail(port_forces_.size()) = scale_.tail(port_forces_.size()).cwiseMax(port_forces_.cwiseAbs());
 }
 
 Newmark::~Newmark() = default;
@@ -143,10 +146,10 @@ bool Newmark::try_step(double h, State& next) {
   VectorXd z(n + n_ports), residual(n + n_ports);
   z << state_.qdd.head(n), port_forces_;
 
+  VectorXd b(n_structures);
   if (n_structures > 0) {
     // Where are the structures touched at the new time? Then their free motion and port compliances.
     system_.evaluate(next);
-    VectorXd b(n_structures);
     int at = 0;
     for (const auto& s : system_.structures()) {
       b.segment(at, s->size()).noalias() = -(s->C() * qd_star_.segment(n + at, s->size()));
@@ -170,13 +173,19 @@ bool Newmark::try_step(double h, State& next) {
     }
     const VectorXd correction = jacobian_.solve(residual);
     z -= correction;
-    scale_ = scale_.cwiseMax(z.cwiseAbs());
     const double size = correction.cwiseAbs().cwiseQuotient(scale_).maxCoeff();
     if (!std::isfinite(size)) return false;
     const bool stalled_at_roundoff =
         size < 1e-3 * std::sqrt(options_.newton_tolerance) && size >= 0.5 * previous;
     if (size <= options_.newton_tolerance || stalled_at_roundoff) {
+      // A port whose place depends on the coordinates has moved: condense there and go on.
+      if (n_structures > 0 && condensation_->ports_moved(system_.ports())) {
+        condensation_->solve(b, system_.ports());
+        previous = std::numeric_limits<double>::infinity();
+        continue;
+      }
       set_unknowns(z, next);
+      next_scale_ = floors_.cwiseMax(0.9 * scale_).cwiseMax(z.cwiseAbs());
       port_forces_ = z.tail(n_ports);
       if (n_structures > 0) {
         y_.resize(n_structures);
@@ -207,9 +216,15 @@ void Newmark::step() {
     if (!options_.variable_step) {
       if (!converged)
         throw SolverError(
-            fmt::format("Newmark: no convergence at t = {} s with step {} s after {} iterations, "
-                        "residual {:.3g}; try a smaller step",
-                        state_.t, h_, options_.max_iterations, last_residual_));
+            std::isfinite(last_residual_)
+                ? fmt::format("Newmark: no convergence at t = {} s with step {} s after {} iterations, "
+                              "residual {:.3g}; "
+                              "try a smaller step",
+                              state_.t, h_, options_.max_iterations, last_residual_)
+                : fmt::format(
+                      "Newmark: the residual is not a finite number at t = {} s with step {} s; does a force "
+                      "divide by zero or take a root of a negative number?",
+                      state_.t, h_));
       break;
     }
 
@@ -217,12 +232,9 @@ void Newmark::step() {
     const double error = converged ? local_error(next, h_) : 8;
     const double factor = std::clamp(0.9 / std::cbrt(std::max(error, 1e-9)), 0.25, 2.0);
     if (converged && error <= 1) {
-      const double taken = h_;
       // Small changes are not worth a new factorisation.
       if (factor > 1.3 || factor < 0.9) h_ = std::min(h_ * factor, options_.max_step);
-      state_ = std::move(next);
-      ++statistics_.steps;
-      (void)taken;
+      accept(next);
       return;
     }
     ++statistics_.rejected;
@@ -234,18 +246,23 @@ void Newmark::step() {
                       "tolerance, residual {:.3g}); is there an impact, or is the tolerance too tight?",
                       options_.min_step, state_.t, error, last_residual_));
   }
+  accept(next);
+}
+
+void Newmark::accept(State& next) {
   state_ = std::move(next);
+  scale_ = next_scale_;
   ++statistics_.steps;
 }
 
 void Newmark::advance(double t_end, const std::function<void(const State&)>& after_each_step) {
-  while (t_end - state_.t > 1e-9 * h_) {
+  while (t_end - state_.t > 1e-6 * h_) {
     const double regular = h_;
     // A rest within a millionth of a step is the same step.
     const bool shortened = state_.t + h_ > t_end + 1e-6 * h_;
     if (shortened) h_ = t_end - state_.t;
     step();
-    if (shortened && !options_.variable_step) h_ = regular;
+    if (shortened) h_ = regular;
     if (after_each_step) after_each_step(state_);
   }
 }

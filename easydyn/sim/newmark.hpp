@@ -50,7 +50,7 @@ class Newmark {
   const State& state() const { return state_; }
   /// One accepted step. @throws SolverError naming time, step, residual and what to try
   void step();
-  /// Steps until t_end, which is met exactly (the last step is shortened if need be).
+  /// Steps until t_end, met within a millionth of a step (the last step is shortened if need be).
   void advance(double t_end, const std::function<void(const State&)>& after_each_step = {});
 
   struct Statistics {
@@ -61,6 +61,7 @@ class Newmark {
 
  private:
   bool try_step(double h, State& next);  // false: Newton did not converge
+  void accept(State& next);
   void prepare(double h);
   void set_unknowns(const Eigen::VectorXd& z, State& next);
   void evaluate(const Eigen::VectorXd& z, State& next, Eigen::VectorXd& residual);
@@ -75,7 +76,9 @@ class Newmark {
   double h_;                  // size of the next step
   double prepared_step_ = 0;  // for which condensation and Jacobian hold
   std::unique_ptr<Condensation> condensation_;
-  Eigen::VectorXd port_forces_, q_star_, qd_star_, scale_, y_;
+  Eigen::VectorXd port_forces_, q_star_, qd_star_, y_;
+  // Magnitudes of the unknowns: those of the last steps, never below the floors; renewed by accepted steps only.
+  Eigen::VectorXd floors_, scale_, next_scale_;
   Eigen::PartialPivLU<Eigen::MatrixXd> jacobian_;
   bool jacobian_known_ = false;
   double last_residual_ = 0;

@@ -81,6 +81,9 @@ class StaticProblem {
     return s;
   }
 
+  /// Whether the last evaluation touched the structures elsewhere than where they were condensed.
+  bool ports_moved() const { return condensation_.ports_moved(system_.ports()); }
+
   std::string name(int i) const {
     return i < n_ ? "coordinate \"" + system_.coordinate_name(i) + "\""
                   : fmt::format("port force {}", i - n_);
@@ -219,16 +222,27 @@ void polish(StaticProblem& problem, VectorXd& z, double reference, const StaticO
 }  // namespace
 
 State solve_static_equilibrium(System& system, const State& guess, const StaticOptions& options) {
-  StaticProblem problem(system, guess);
-  if (problem.size() == 0) return problem.solution(VectorXd());
-  VectorXd z = problem.initial(), r(problem.size());
+  State state = guess;
+  constexpr int most_passes = 50;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    StaticProblem problem(system, state);
+    VectorXd z = problem.initial(), r(problem.size());
+    if (problem.size() == 0) return problem.solution(z);
 
-  // Forces are measured against the largest one that acts at the start with all springs at rest.
-  problem.residual(z, r);
-  const double reference = std::max(r.lpNorm<Eigen::Infinity>(), 1.0);
-  solve_with_kinsol(problem, z, reference, options);
-  polish(problem, z, reference, options);
-  return problem.solution(z);
+    // Forces are measured against the largest one that acts at the guess.
+    problem.residual(z, r);
+    const double reference = std::max(r.lpNorm<Eigen::Infinity>(), 1.0);
+    if (pass == 0) solve_with_kinsol(problem, z, reference, options);
+    polish(problem, z, reference, options);
+    state = problem.solution(z);
+
+    // A port whose place depends on the coordinates has moved: condense again there.
+    if (!problem.ports_moved()) return state;
+  }
+  throw SolverError(
+      fmt::format("static equilibrium: the places where system \"{}\" touches its structures do not "
+                  "settle in {} passes; is the first guess near?",
+                  system.name(), most_passes));
 }
 
 State solve_static_equilibrium(System& system, const StaticOptions& options) {
@@ -253,6 +267,8 @@ State solve_quasi_static_motion(System& system, const State& guess, double dt, c
   start.q = q[2];
   start.qd = (q[0] - 8 * q[1] + 8 * q[3] - q[4]) / (12 * dt);
   start.qdd = (-q[0] + 16 * q[1] - 30 * q[2] + 16 * q[3] - q[4]) / (12 * dt * dt);
+  start.qd.head(system.body_size()).setZero();
+  start.qdd.head(system.body_size()).setZero();
   return solve_static_equilibrium(system, start, options);
 }
 

@@ -21,10 +21,12 @@ struct StaticOptions {
 State solve_static_equilibrium(System& system, const State& guess, const StaticOptions& options = {});
 State solve_static_equilibrium(System& system, const StaticOptions& options = {});
 
-/// A smooth start for a load that moves from t = guess.t on: the state that a slow motion has. Static
-/// equilibria at t - 2 dt ... t + 2 dt give rates and accelerations by central differences; the coordinates
-/// then balance the damping and inertia forces that these produce, so the residual vanishes and there is no
-/// initial shock. Exact for the quasi-static limit; dynamic effects enter at second order of the speed.
+/// A smooth start for a load that moves over linear structures from t = guess.t on. Static equilibria at t - 2 dt ...
+/// t + 2 dt give rates and accelerations of the structures by central differences; the coordinates then balance the
+/// damping and inertia forces that these produce, so the residual vanishes and the structures get no jolt.
+///
+/// Bodies start at rest in their coordinates (imposed motions go on): a soft suspension does not follow the ripple of
+/// discrete supports, and differences of the ripple would set it swinging.
 /// @param dt  difference step [s]; the load should move by a small part of the shortest feature
 State solve_quasi_static_motion(System& system, const State& guess, double dt,
                                 const StaticOptions& options = {});

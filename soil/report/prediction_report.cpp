@@ -147,6 +147,8 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
       "Results in " + std::filesystem::absolute(results_dir / "x").parent_path().filename().string());
   Facts facts;
   if (track) facts = origin("Step 1, vehicle and track", *track);
+  if (track && track->has("/description"))
+    facts.insert(facts.begin(), {"Run", track->read_text("/description")});
   if (ground)
     for (auto& fact : origin("Step 2, ground", *ground)) facts.push_back(std::move(fact));
   report.add_facts(std::move(facts));
@@ -154,6 +156,9 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
   report.add_section("Key figures");
   const auto figures = key_figures(track, ground, comparison);
   if (!figures.empty()) report.add_key_figures(figures);
+  if (track && track->has("/warnings"))
+    for (const std::string& warning : track->read_names("/warnings"))
+      report.add_note("Warning: " + warning + ".");
   if (ground)
     report.add_note(fmt::format(
         "Free-field prediction, band-limited to {} Hz. Absolute levels are no better than about 10 dB.",

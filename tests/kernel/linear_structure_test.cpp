@@ -150,24 +150,84 @@ TEST(LinearStructure, SatisfiesTheFullEquationsAfterACondensedStep) {
   EXPECT_LT(system.compute_residual(integrator.state()).lpNorm<Eigen::Infinity>(), 1e-7);  // of 500 N
 }
 
-TEST(LinearStructure, StartsWithoutAShockInQuasiStaticMotion) {
-  // From static equilibrium with zero rates the moving weights jolt; from the quasi-static motion they do
-  // not.
-  const auto largest_jolt = [](bool quasi_static) {
-    WithStructure system;
-    const State guess = solve_static_equilibrium(system);
-    State start = quasi_static ? solve_quasi_static_motion(system, guess, 1e-3) : guess;
-    EXPECT_LT(system.compute_residual(start).lpNorm<Eigen::Infinity>(), 1e-7);
-    Newmark integrator(system, start, {.step = 2e-4});
-    double jolt = 0;
-    for (int i = 0; i < 20; ++i) {
-      const VectorXd before = integrator.state().qd;
-      integrator.step();
-      jolt = std::max(jolt, ((integrator.state().qd - before) / 2e-4 - start.qdd).lpNorm<Eigen::Infinity>());
+TEST(LinearStructure, StartsInQuasiStaticMotionWithTheRatesOfItsDeflectionInBalance) {
+  WithStructure system;
+  const State guess = solve_static_equilibrium(system);
+  const State start = solve_quasi_static_motion(system, guess, 1e-3);
+  EXPECT_LT(system.compute_residual(start).lpNorm<Eigen::Infinity>(), 1e-7);
+  // The rates are those at which the static deflection changes as the weights move on.
+  const double d = 1e-4;
+  State before = guess, after = guess;
+  before.t = -d;
+  after.t = d;
+  const VectorXd rates =
+      (solve_static_equilibrium(system, after).q - solve_static_equilibrium(system, before).q) / (2 * d);
+  EXPECT_LT((start.qd - rates).tail(n).norm(), 1e-6 * rates.tail(n).norm());
+  EXPECT_EQ(start.qd.head(2).norm(), 0);
+}
+
+// A weight free to move along the chain, held by a spring: where it touches depends on a coordinate.
+class FreeToMove : public System {
+ public:
+  Coordinate x = coordinate("x", 3.4), z = coordinate("z", 0.02);
+  Body& weight = body("weight", 20.0);
+  LinearStructure& chain;
+  FreeToMove() : chain(make_chain()) {}
+  void positions() override { weight = translate(x, 0, -z); }
+  void forces() override {
+    gravity();
+    weight.add_force({-900 * (x.value() - 4.1) - 30 * x.rate(), 0, 0}, weight.position());
+    const int i = static_cast<int>(x.value());
+    const double s = x.value() - i;
+    PortShape shape;
+    shape.add(i, 1 - s, -1);
+    shape.add(i + 1, s, 1);
+    Port port = touch(chain, shape);
+    const double F = contact_force(z.value() - port.displacement());
+    port.add_force(F);
+    // The contact is normal to the chain, which slopes.
+    weight.add_force({F * port.slope(), 0, F}, weight.position());
+  }
+
+ private:
+  LinearStructure& make_chain() {
+    ChainMatrices c;
+    return structure("chain", c.M, c.C, c.K);
+  }
+};
+
+TEST(LinearStructure, IsInEquilibriumWhereTheLoadHasMovedTo) {
+  FreeToMove system;
+  const State s = solve_static_equilibrium(system);
+  EXPECT_GT(std::abs(s.q[0] - 3.4), 0.3);  // it moved to the next mass
+  EXPECT_LT(system.compute_residual(s).lpNorm<Eigen::Infinity>(), 1e-8 * 20 * 9.81);
+}
+
+TEST(LinearStructure, SatisfiesTheFullEquationsUnderALoadThatMovesFreely) {
+  FreeToMove system;
+  State start = solve_static_equilibrium(system);
+  start.qd[0] = 2;
+  Newmark integrator(system, start, {.step = 5e-4});
+  for (int i = 0; i < 200; ++i) {
+    integrator.step();
+    EXPECT_LT(system.compute_residual(integrator.state()).lpNorm<Eigen::Infinity>(), 1e-6);  // of 196 N
+  }
+}
+
+TEST(LinearStructure, CanBeTouchedInsideForcesOnlyAndWhereItIs) {
+  WithStructure system;
+  PortShape shape;
+  shape.add(0, 1);
+  EXPECT_THROW(system.touch(system.chain, shape), ModelError);
+  class Outside : public WithStructure {
+   public:
+    void forces() override {
+      PortShape beyond;
+      beyond.add(n, 1);
+      touch(chain, beyond);
     }
-    return jolt;
-  };
-  EXPECT_LT(largest_jolt(true), 0.2 * largest_jolt(false));
+  } outside;
+  EXPECT_THROW(outside.evaluate(outside.initial_state()), ModelError);
 }
 
 TEST(LinearStructure, AddsItsEnergyToTheBalance) {

@@ -106,7 +106,7 @@ TEST(Passage, KeepsTheSumOfReactionsNearTheWeight) {
     EXPECT_NEAR(p.ballast_reaction.row(i).sum() / (9000 * g), 1, 1e-2);
 }
 
-TEST(Passage, OverAStepBalancesItsEnergyAtSecondOrderWithTheDriveAtWork) {
+TEST(Passage, OverABumpBalancesItsEnergyAtSecondOrderWithTheDriveAtWork) {
   // A smooth bump in place of the step, so that the order of the quadrature can be seen.
   class Bump : public Profile {
    public:
@@ -130,13 +130,23 @@ TEST(Passage, OverAStepBalancesItsEnergyAtSecondOrderWithTheDriveAtWork) {
   EXPECT_NEAR(std::log2(coarse / fine), 2, 0.3);
 }
 
-TEST(Passage, OverAStepKeepsContactForcesAndReactionsWhenTheTimeStepIsHalved) {
+TEST(Passage, OverAStepKeepsTheReactionsWhenTheTimeStepIsHalved) {
   const Foundation clm = t2000_like_track().foundation;
   const auto step = std::make_shared<StepProfile>(0, 1e-3);
   const Passage coarse = roll(clm, 1e-4, step), fine = roll(clm, 5e-5, step);
   EXPECT_GT(coarse.contact_force.maxCoeff(), 1.5 * 9000 * g);
   // The soil sees the reactions; the impact itself is sampled at output times and converges more slowly.
   EXPECT_LT((coarse.ballast_reaction - fine.ballast_reaction).norm(), 0.01 * fine.ballast_reaction.norm());
+  EXPECT_NEAR(coarse.largest_contact_force[0] / fine.largest_contact_force[0], 1, 0.1);
+}
+
+TEST(Passage, WarnsWhereTheBallastPullsMoreThanTheTrackWeighs) {
+  const Passage flat = roll(t2000_like_track().foundation, 2e-4, std::make_shared<FlatProfile>());
+  EXPECT_TRUE(flat.warnings.empty());
+  EXPECT_NEAR(flat.track_weight, 9.81 * (180 + 0.72 * 2 * 49.97), 1e-6);
+  const Passage step = roll(t2000_like_track().foundation, 2e-4, std::make_shared<StepProfile>(0, 4e-3));
+  ASSERT_EQ(step.warnings.size(), 1u);
+  EXPECT_NE(step.warnings[0].find("uplift"), std::string::npos);
 }
 
 TEST(Passage, OnAMovingConstantForceDeflectsTheRailAsTheClosedForm) {
@@ -202,6 +212,8 @@ TEST(Passage, RefusesImpossibleOptions) {
   EXPECT_THROW(run({.duration = -1}), ModelError);
   EXPECT_THROW(run({.duration = 1, .step = std::nan("")}), ModelError);
   EXPECT_THROW(run({.duration = 1, .step = 1e-4, .output_step = 2.5e-4}), ModelError);
+  EXPECT_THROW(run({.duration = 1, .first_sleeper_x = 0.1, .last_sleeper_x = 0.2}),
+               ModelError);  // no sleeper there
 }
 
 TEST(WheelRailContact, SaysWhenTheWheelLeavesTheTrack) {
