@@ -10,10 +10,13 @@
 ///
 ///   M = sum_b m Jv^T Jv + Jw^T I Jw
 ///   h = sum_b m Jv^T a_bias + Jw^T (I alpha_bias + w x I w)
+///
+/// The time is one more variable of the Taylor arithmetic, of rate 1 and acceleration 0, behind the n
+/// coordinates: velocities and biases take all n + 1, the partial velocities Jv, Jw the coordinates only.
 /// Reference: W. Schiehlen, P. Eberhard, Applied Dynamics, Springer, 2014, ch. 5.
 namespace reference {
 
-/// Value, gradient and Hessian of a function of q.
+/// Value, gradient and Hessian of a function of n variables.
 struct Jet {
   double f = 0;
   Eigen::VectorXd g;
@@ -90,23 +93,28 @@ struct TextbookDynamics {
   double kinetic = 0;
 };
 
+/// @param bodies  poses as functions of the variables (q, t)
+/// @param qd      rates of the coordinates; that of t is 1
 inline TextbookDynamics textbook_dynamics(const std::vector<TextbookBody>& bodies, const Eigen::VectorXd& qd,
                                           double g) {
   using Eigen::Matrix3d, Eigen::Vector3d, Eigen::MatrixXd;
   const int n = static_cast<int>(qd.size());
   TextbookDynamics d{MatrixXd::Zero(n, n), Eigen::VectorXd::Zero(n), 0};
+  Eigen::VectorXd rate(n + 1);
+  rate << qd, 1;
   const auto vee = [](const Matrix3d& W) { return Vector3d(W(2, 1), W(0, 2), W(1, 0)); };
   for (const TextbookBody& b : bodies) {
     MatrixXd Jv(3, n), Jw(3, n);
-    Vector3d a_bias;
+    Vector3d v, a_bias;
     Matrix3d R, R_dot, R_ddot;
     for (int i = 0; i < 3; ++i) {
-      Jv.row(i) = b.pose.p[i].g.transpose();
-      a_bias[i] = qd.dot(b.pose.p[i].H * qd);
+      Jv.row(i) = b.pose.p[i].g.head(n).transpose();
+      v[i] = b.pose.p[i].g.dot(rate);
+      a_bias[i] = rate.dot(b.pose.p[i].H * rate);
       for (int j = 0; j < 3; ++j) {
         R(i, j) = b.pose.R[i][j].f;
-        R_dot(i, j) = b.pose.R[i][j].g.dot(qd);
-        R_ddot(i, j) = qd.dot(b.pose.R[i][j].H * qd);
+        R_dot(i, j) = b.pose.R[i][j].g.dot(rate);
+        R_ddot(i, j) = rate.dot(b.pose.R[i][j].H * rate);
       }
     }
     for (int k = 0; k < n; ++k) {
@@ -121,7 +129,6 @@ inline TextbookDynamics textbook_dynamics(const std::vector<TextbookBody>& bodie
     d.M += b.mass * Jv.transpose() * Jv + Jw.transpose() * I * Jw;
     d.h += b.mass * Jv.transpose() * (a_bias + Vector3d(0, 0, g)) +
            Jw.transpose() * (I * alpha + w.cross(I * w));
-    const Vector3d v = Jv * qd;
     d.kinetic += 0.5 * b.mass * v.squaredNorm() + 0.5 * w.dot(I * w);
   }
   return d;
