@@ -69,6 +69,18 @@ int count_elements(double length, double size) {
 
 }  // namespace
 
+std::string describe_farthest_receiver(const Site& site) {
+  const auto reach = [](const Receiver& r) {
+    return std::hypot(r.position[0], r.position[1], r.position[2]);
+  };
+  const auto farthest =
+      std::max_element(site.receivers.begin(), site.receivers.end(),
+                       [&](const Receiver& a, const Receiver& b) { return reach(a) < reach(b); });
+  if (farthest == site.receivers.end()) return "none";
+  return fmt::format("\"{}\" at ({}, {}, {}) m", farthest->name, farthest->position[0], farthest->position[1],
+                     farthest->position[2]);
+}
+
 Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
                      const LatticeOptions& options) {
   check_site(site);
@@ -125,10 +137,11 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     return options.degree * cs / (site.highest_frequency * site.points_per_wavelength);
   };
   const double h = size_for(slowest);
-  require(
-      (high_x - low_x) / h < 1e5 && (high_y - low_y) / h < 1e5,
-      fmt::format("lattice: the undamped ground of {:.0f} m x {:.0f} m needs elements of {:.3g} m: too many",
-                  high_x - low_x, high_y - low_y, h));
+  require((high_x - low_x) / h < 1e5 && (high_y - low_y) / h < 1e5,
+          fmt::format(
+              "lattice: the undamped ground of {:.0f} m x {:.0f} m needs elements of {:.3g} m: too many; the "
+              "farthest receiver is {}",
+              high_x - low_x, high_y - low_y, h, describe_farthest_receiver(site)));
 
   Lattice lattice;
   lattice.degree = options.degree;

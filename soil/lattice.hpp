@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "soil/site.hpp"
@@ -49,5 +50,8 @@ struct Lattice {
 /// @throws ModelError if the site or an option is out of range, naming it, its value and the accepted range
 Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
                      const LatticeOptions& options = {});
+
+/// Name and position of the receiver farthest from the origin, for messages; "none" without receivers.
+std::string describe_farthest_receiver(const Site& site);
 
 }  // namespace easydyn::soil

@@ -41,18 +41,34 @@ struct Rheology {
   std::vector<double> rates;
 };
 
+// The fit spans the band of the site and the frequency at which the ratio is given.
+Relaxation fit_constant_ratio(const Site& site, const Layer& layer) {
+  const double low = site.highest_frequency / 10, high = site.highest_frequency,
+               reference = site.damping_frequency;
+  const Relaxation body = fit_relaxation(layer.damping, std::min(low, reference), std::max(high, reference),
+                                         reference, mechanisms);
+  bool is_sound = body.weights.allFinite() && body.weights.sum() < 1;
+  for (double f = low; f <= 1.001 * high; f *= 1.2)
+    is_sound = is_sound && std::abs(body.compute_damping_ratio(f) - layer.damping) <= 0.25 * layer.damping;
+  if (!is_sound)
+    throw ModelError(
+        fmt::format("layer \"{}\": damping = {} at damping_frequency = {} Hz cannot be held over {} to {} Hz "
+                    "within a quarter; "
+                    "damping_frequency must be nearer to that band, or the damping lower",
+                    layer.name, layer.damping, reference, low, high));
+  return body;
+}
+
 Rheology make_rheology(const Site& site, DampingModel model) {
   Rheology rheology;
   const bool damped =
       std::any_of(site.layers.begin(), site.layers.end(), [](const Layer& l) { return l.damping > 0; });
-  const double highest = site.highest_frequency;
   for (const Layer& layer : site.layers) {
     EngineMaterial material{layer.lame_lambda(), layer.shear_modulus(), layer.density, 0, {}};
     if (damped && model == DampingModel::stiffness_proportional)
       material.beta = layer.damping / (M_PI * site.damping_frequency);
     if (damped && model == DampingModel::constant_ratio) {
-      const Relaxation body =
-          fit_relaxation(layer.damping, highest / 10, highest, site.damping_frequency, mechanisms);
+      const Relaxation body = fit_constant_ratio(site, layer);
       material.lambda *= body.unrelaxed;
       material.mu *= body.unrelaxed;
       material.memory_weights.assign(body.weights.data(), body.weights.data() + mechanisms);
@@ -128,10 +144,12 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
                                     : WaveEngine<float>::compute_memory(lattice, memories);
   const double limit = options.memory_limit > 0 ? options.memory_limit : 0.8 * physical_memory();
   if (!(memory <= limit))
-    throw ModelError(
-        fmt::format("solver: {:.3g} million degrees of freedom need {:.3g} GB of memory, must be at most "
-                    "{:.3g} GB: lower highest_frequency, points_per_wavelength or margin",
-                    static_cast<double>(lattice.dofs()) * 1e-6, memory * 1e-9, limit * 1e-9));
+    throw ModelError(fmt::format(
+        "solver: {:.3g} million degrees of freedom need {:.3g} GB of memory, must be at most "
+        "{:.3g} GB: lower highest_frequency, points_per_wavelength or margin, or bring the farthest "
+        "receiver nearer ({})",
+        static_cast<double>(lattice.dofs()) * 1e-6, memory * 1e-9, limit * 1e-9,
+        describe_farthest_receiver(site)));
 
   EngineBoundary boundary;
   boundary.sponge_strength = options.sponge_strength;
@@ -153,8 +171,15 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   // The output step is a whole number of time steps.
   const double largest =
       with_engine([&](auto& engine) { return options.step_safety * engine.compute_stable_step(); });
-  if (!(largest > 0) || !std::isfinite(largest))
-    throw SolverError(fmt::format("wave solver: no stable time step found (limit {} s)", largest));
+  if (!(largest > 0) || !std::isfinite(largest)) {
+    const auto thinnest = std::min_element(
+        site.layers.begin(), site.layers.end() - 1,
+        [](const Layer& a, const Layer& b) { return a.thickness / a.cp < b.thickness / b.cp; });
+    throw SolverError(
+        fmt::format("wave solver: no stable time step found (limit {} s); layer \"{}\" of {} m asks for "
+                    "the smallest: is it too thin?",
+                    largest, thinnest->name, thinnest->thickness));
+  }
   output_step = options.output_step > 0 ? options.output_step : 1 / (10 * site.highest_frequency);
   steps_per_output = static_cast<long>(std::ceil(output_step / largest));
   dt = output_step / static_cast<double>(steps_per_output);
@@ -164,6 +189,17 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
       site.duration > 0 ? site.duration : history.last_time() - history.first_time() + site.decay_time;
   if (!(duration > 0) || !std::isfinite(duration))
     throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration));
+  if (!(duration >= 10 * output_step))
+    throw ModelError(fmt::format("site: duration = {} s, must be at least ten output steps of {} s", duration,
+                                 output_step));
+  // Histories of receivers and footprints, held twice while they are written.
+  const double histories = 2 * 8 * duration / output_step *
+                           static_cast<double>(3 * site.receivers.size() + loads.footprints.size());
+  if (!(memory + histories <= limit))
+    throw ModelError(
+        fmt::format("site: duration = {} s gives histories of {:.3g} GB, fields and histories must be at "
+                    "most {:.3g} GB",
+                    duration, histories * 1e-9, limit * 1e-9));
   outputs = static_cast<long>(std::floor(duration / output_step + 1e-9)) + 1;
   Eigen::VectorXd start;
   history.update_forces(history.first_time() + 1e-12 * output_step, start);

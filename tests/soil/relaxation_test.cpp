@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "easydyn/error.hpp"
+#include "soil/wave_solver.hpp"
+
 namespace easydyn::soil {
 namespace {
 
@@ -25,6 +28,40 @@ TEST(Relaxation, IsElasticWithoutDamping) {
   const Relaxation body = fit_relaxation(0, 2, 62.5, 20, 3);
   EXPECT_EQ(body.weights.norm(), 0);
   EXPECT_EQ(body.unrelaxed, 1);
+}
+
+TEST(Relaxation, HoldsTheRatioWhenTheReferenceLiesOutsideTheBandOfTheSite) {
+  // What WaveSolver asks for at highest_frequency = 5 Hz and damping_frequency = 20 Hz.
+  for (const double ratio : {0.03, 0.15}) {
+    const Relaxation body = fit_relaxation(ratio, 0.5, 20, 20, 3);
+    EXPECT_LT(body.weights.sum(), 1);  // the static modulus is positive
+    for (double f = 0.5; f <= 5; f *= 1.3)
+      EXPECT_NEAR(body.compute_damping_ratio(f), ratio, 0.15 * ratio) << f;
+  }
+}
+
+TEST(Relaxation, IsRefusedByTheSolverWhereItCannotHoldTheRatio) {
+  Site site;
+  Layer ground;
+  ground.name = "loam";
+  ground.density = 1800;
+  ground.cs = 150;
+  ground.cp = 300;
+  ground.damping = 0.03;
+  site.layers = {ground};
+  site.receivers = {{"r", {4, 0, 0}}};
+  site.highest_frequency = 20;
+  site.damping_frequency = 5000;
+  SurfaceLoads loads;
+  loads.time = Eigen::VectorXd::LinSpaced(101, 0, 1);
+  loads.footprints = {{0, 0, 1, 1}};
+  loads.force = Eigen::MatrixXd::Zero(101, 1);
+  try {
+    WaveSolver solver(site, loads);
+    FAIL();
+  } catch (const ModelError& e) {
+    EXPECT_NE(std::string(e.what()).find("layer \"loam\": damping = 0.03"), std::string::npos) << e.what();
+  }
 }
 
 }  // namespace
