@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "easydyn/results/progress.hpp"
 #include "soil/frequency_filter.hpp"
+#include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -28,20 +30,80 @@ void add_site(std::vector<Parameter>& rows, const Site& site) {
   }
 }
 
+// Where the settings of the solver come from: a key that the site file does not hold has its default.
+class Origin {
+ public:
+  explicit Origin(const Site& site) : keys_(toml::parse(site.text)) {}
+  std::string of_key(const char* table, const char* key, double value, double standard) const {
+    if (keys_[table][key]) return "site file";
+    return value == standard ? "default" : "caller";  // a site made by a program has no text
+  }
+  template <typename T>
+  static std::string of_option(const T& value, const T& standard) {
+    return value == standard ? "default" : "option";
+  }
+
+ private:
+  toml::table keys_;
+};
+
+void add_settings(std::vector<Parameter>& rows, const Site& site) {
+  const Site standard;
+  const Origin origin(site);
+  const auto add = [&](const char* name, const char* unit, const char* table, const char* key,
+                       double Site::*value) {
+    rows.push_back(
+        {"solver", name, site.*value, unit, origin.of_key(table, key, site.*value, standard.*value)});
+  };
+  add("highest frequency", "Hz", "solver", "highest_frequency", &Site::highest_frequency);
+  add("frequency of the damping ratios and wave speeds", "Hz", "solver", "damping_frequency",
+      &Site::damping_frequency);
+  add("points per shortest wavelength", "1", "solver", "points_per_wavelength", &Site::points_per_wavelength);
+  add("undamped ground around loads and receivers", "m", "solver", "margin", &Site::margin);
+  add("length over which the loads fade out", "m", "loads", "taper_length", &Site::taper_length);
+}
+
+// Numbers stand for choices; the name says which.
+void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOptions& options) {
+  const SolverOptions standard;
+  const auto add = [&](const char* group, const char* name, const char* unit, double value,
+                       double default_value) {
+    rows.push_back({group, name, value, unit, Origin::of_option(value, default_value)});
+  };
+  const auto number = [](DampingModel model) {
+    return model == DampingModel::none ? 0.0 : model == DampingModel::stiffness_proportional ? 1.0 : 2.0;
+  };
+  const char* const damping = "material damping (0 none, 1 stiffness, 2 constant)";
+  if (std::any_of(site.layers.begin(), site.layers.end(), [](const Layer& l) { return l.damping > 0; })) {
+    add("solver", damping, "1", number(options.damping), number(standard.damping));
+  } else {
+    rows.push_back({"solver", damping, 0, "1", "all damping ratios are 0"});
+  }
+  add("solver", "degree of the elements", "1", options.degree, standard.degree);
+  add("solver", "precision of the fields", "bit", options.double_precision ? 64 : 32,
+      standard.double_precision ? 64 : 32);
+  add("solver", "half model, y >= 0 (0 no, 1 yes)", "1", options.half_model, standard.half_model);
+  add("boundary", "sponge elements on each outer side (three quarters of it below)", "1",
+      options.sponge_elements, standard.sponge_elements);
+  add("boundary", "dashpots and far-field springs on the outer faces (0 no, 1 yes)", "1", options.dashpots,
+      standard.dashpots);
+}
+
 void add_solver(std::vector<Parameter>& rows, const Site& site, WaveSolver& solver) {
+  add_settings(rows, site);
+  add_options(rows, site, solver.options());
   const RunSummary summary = solver.compute_summary();
-  const std::string given = "site file", computed = "computed";
-  rows.push_back({"solver", "highest frequency", site.highest_frequency, "Hz", given});
-  rows.push_back({"solver", "frequency of the damping ratios", site.damping_frequency, "Hz", given});
-  rows.push_back({"solver", "points per shortest wavelength", site.points_per_wavelength, "1", given});
-  rows.push_back({"solver", "undamped ground around loads and receivers", site.margin, "m", given});
-  rows.push_back({"solver", "length over which the loads fade out", site.taper_length, "m", given});
-  rows.push_back(
-      {"solver", "degree of the elements", static_cast<double>(solver.lattice().degree), "1", given});
-  rows.push_back({"solver", "elements", static_cast<double>(summary.elements), "1", computed});
-  rows.push_back({"solver", "degrees of freedom", static_cast<double>(summary.dofs), "1", computed});
-  rows.push_back({"solver", "time step", summary.time_step, "s", computed});
-  rows.push_back({"solver", "steps", static_cast<double>(summary.steps), "1", computed});
+  const Lattice& lattice = solver.lattice();
+  const auto add = [&](const char* group, const char* name, double value, const char* unit) {
+    rows.push_back({group, name, value, unit, "computed"});
+  };
+  add("mesh", "extent along x, with the sponge", lattice.x.back() - lattice.x.front(), "m");
+  add("mesh", "extent along y, with the sponge", lattice.y.back() - lattice.y.front(), "m");
+  add("mesh", "depth, with the sponge", lattice.z.back() - lattice.z.front(), "m");
+  add("mesh", "elements", static_cast<double>(summary.elements), "1");
+  add("mesh", "degrees of freedom", static_cast<double>(summary.dofs), "1");
+  add("mesh", "time step", summary.time_step, "s");
+  add("mesh", "steps", static_cast<double>(summary.steps), "1");
 }
 
 std::string format_memory(double bytes) {

@@ -19,8 +19,10 @@ namespace easydyn::soil {
 
 namespace {
 
-// Two mechanisms over a decade below the highest frequency: 3 % becomes 2.96 to 3.15 %.
-constexpr int mechanisms = 2;
+// Two mechanisms over a decade below the highest frequency: 3 % becomes 2.96 to 3.15 %. A wider band takes three.
+int count_mechanisms(double lowest, double highest) {
+  return highest <= 10.001 * lowest ? 2 : 3;
+}
 
 void check_options(const SolverOptions& options) {
   const auto require = [](bool condition, const std::string& message) {
@@ -45,8 +47,9 @@ struct Rheology {
 Relaxation fit_constant_ratio(const Site& site, const Layer& layer) {
   const double low = site.highest_frequency / 10, high = site.highest_frequency,
                reference = site.damping_frequency;
-  const Relaxation body = fit_relaxation(layer.damping, std::min(low, reference), std::max(high, reference),
-                                         reference, mechanisms);
+  const double lowest = std::min(low, reference), highest = std::max(high, reference);
+  const Relaxation body =
+      fit_relaxation(layer.damping, lowest, highest, reference, count_mechanisms(lowest, highest));
   bool is_sound = body.weights.allFinite() && body.weights.sum() < 1;
   for (double f = low; f <= 1.001 * high; f *= 1.2)
     is_sound = is_sound && std::abs(body.compute_damping_ratio(f) - layer.damping) <= 0.25 * layer.damping;
@@ -71,8 +74,8 @@ Rheology make_rheology(const Site& site, DampingModel model) {
       const Relaxation body = fit_constant_ratio(site, layer);
       material.lambda *= body.unrelaxed;
       material.mu *= body.unrelaxed;
-      material.memory_weights.assign(body.weights.data(), body.weights.data() + mechanisms);
-      rheology.rates.assign(body.rates.data(), body.rates.data() + mechanisms);
+      material.memory_weights.assign(body.weights.data(), body.weights.data() + body.weights.size());
+      rheology.rates.assign(body.rates.data(), body.rates.data() + body.rates.size());
     }
     rheology.materials.push_back(material);
   }
@@ -286,6 +289,9 @@ WaveSolver& WaveSolver::operator=(WaveSolver&&) noexcept = default;
 
 const Lattice& WaveSolver::lattice() const {
   return impl_->lattice;
+}
+const SolverOptions& WaveSolver::options() const {
+  return impl_->options;
 }
 double WaveSolver::time_step() const {
   return impl_->dt;

@@ -73,6 +73,7 @@ class WaveSolver {
   WaveSolver& operator=(WaveSolver&&) noexcept;
 
   const Lattice& lattice() const;
+  const SolverOptions& options() const;
   double time_step() const;  ///< [s]
   long steps() const;
   /// Sizes and the expected time; times the real kernel for a fraction of a second at the first call.
