@@ -62,7 +62,7 @@ struct GroundMotion {
 ///
 /// M diagonal (GLL quadrature), C sponge and dashpots, p_j uniform pressure over footprint j.
 /// Nothing above Site::highest_frequency is claimed: outputs are decimated without a filter because the loads
-/// are expected to be band limited.
+/// are expected to be limited by limit_band(): unchanged up to that frequency, zero from 1.25 times it.
 class WaveSolver {
  public:
   /// @throws ModelError if site, loads or options are out of range, a receiver or footprint is outside the
