@@ -5,9 +5,9 @@
 
 namespace easydyn::soil {
 
-/// What is said about the vibration of one receiver. Every number is **band-limited**: it holds what the
-/// velocity holds, no more than Site::highest_frequency, and is a lower bound of what a broad-band instrument
-/// would show.
+/// What is said about the vibration of one receiver. Every number is **band-limited**: loads are
+/// passed unchanged up to Site::highest_frequency and rolled off to zero at 1.25 times it (limit_band()); what
+/// lies above is not in the numbers.
 struct Indicators {
   std::array<double, 4> ppv{};       ///< [m/s] peak particle velocity of x, y, z and of the resultant
   Eigen::VectorXd third_octave_rms;  ///< [m/s] of v_z per band of third_octave_centres(); NaN: not known
@@ -30,8 +30,7 @@ double compute_resultant_peak(const Eigen::Ref<const Eigen::VectorXd>& x,
 double compute_vdb(const Eigen::Ref<const Eigen::VectorXd>& velocity, double step);
 
 /// All indicators of one receiver.
-/// @param vx, vy, vz         velocity [m/s], at rest before the record, without content above
-/// highest_frequency
+/// @param vx, vy, vz         velocity [m/s], at rest before the record, under loads limited by limit_band()
 /// @param step               [s], > 0
 /// @param highest_frequency  [Hz]
 Indicators compute_indicators(const Eigen::Ref<const Eigen::VectorXd>& vx,

@@ -16,14 +16,15 @@ namespace easydyn::soil {
 ///     thickness = 2.0                         # [m]; the last layer has none: it is a half-space
 ///     density = 1800                          # [kg/m3]
 ///     damping = 0.03                          # ratio at solver.damping_frequency, >= 0 and < 0.2
-///     cs = 150                                # [m/s] shear wave speed, with cp [m/s] or nu; or E [Pa] with
-///     nu nu = 0.33                               # Poisson ratio, 0 to 0.49, also where it follows from cp
-///
+///     cs = 150                                # [m/s] shear wave speed, with cp [m/s] or nu
+///     nu = 0.33                               # Poisson ratio, 0 to 0.49, also where it follows from cp
+///     # E = 1.1e8                             # [Pa] with nu, in place of cs; cs, cp and E hold at
+///                                             # solver.damping_frequency
 ///     [[receiver]]
 ///     name = "8 m"                            # a name of its own
-///     distance = 8                            # [m] from the track's axis: (0, 8, 0); or position = [x, y]
-///     or
-///                                             # [x, y, z] [m], z <= 0
+///     distance = 8                            # [m] from the track's axis: (0, 8, 0)
+///     # position = [0, 8, -1]                 # [m] in place of distance: x, y or x, y, z with z <= 0
+///
 ///     [solver]                                # optional, like each of its keys
 ///     highest_frequency = 50                  # [Hz]
 ///     damping_frequency = 20                  # [Hz]
@@ -35,9 +36,8 @@ namespace easydyn::soil {
 ///     duration = 0                            # [s]; 0: as long as the loads, plus decay_time
 ///     decay_time = 0.5                        # [s]
 ///
-/// @throws InputError `file:line:column: object: key = value, must be ...`; an unknown key is refused with
-/// the
-///         nearest known one
+/// @throws InputError `file:line:column: object: key = value, must be ...`; an unknown key is refused
+///         with the nearest known one
 Site read_site(const std::filesystem::path& path);
 
 }  // namespace easydyn::soil
