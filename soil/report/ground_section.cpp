@@ -145,30 +145,33 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
   const MatrixXd rms = ground.read_matrix("/third_octave/rms");
   const std::string highest = visu::short_number_text(ground.read_number_attribute("highest_frequency"));
   report.add_subsection("Indicators");
-  visu::Table table{{"receiver", "distance [m]", "PPV x [mm/s]", "PPV y [mm/s]", "PPV z [mm/s]",
-                     "PPV resultant [mm/s]", "KB_Fmax", "VdB [dB]", "strongest band [Hz]"},
-                    {},
-                    fmt::format("Indicators of the ground vibration, band-limited to {} Hz", highest)};
+  visu::Table table{
+      {"receiver", "distance [m]", "PPV x [mm/s]", "PPV y [mm/s]", "PPV z [mm/s]", "PPV resultant [mm/s]",
+       "KB_Fmax", "VdB [dB]", "strongest band [Hz]"},
+      {},
+      fmt::format("Indicators of the ground vibration, band-limited to {} Hz with a roll-off above",
+                  highest)};
+  const std::string dash = "\u2013";  // no motion, or no band known
   for (const Index i : receivers.near) {
     Index strongest = 0;
-    rms.row(i).unaryExpr([](double v) { return std::isnan(v) ? -1.0 : v; }).maxCoeff(&strongest);
+    const double most =
+        rms.row(i).unaryExpr([](double v) { return std::isnan(v) ? -1.0 : v; }).maxCoeff(&strongest);
     table.rows.push_back({receivers.label(i), visu::short_number_text(receivers.distance(i), 4),
                           number_text(1e3 * ppv(i, 0)), number_text(1e3 * ppv(i, 1)),
                           number_text(1e3 * ppv(i, 2)), number_text(1e3 * ppv(i, 3)), number_text(kb(i)),
-                          fmt::format("{:.1f}", vdb(i)), number_text(centre(strongest))});
+                          std::isfinite(vdb(i)) ? fmt::format("{:.1f}", vdb(i)) : dash,
+                          most > 0 ? number_text(centre(strongest)) : dash});
   }
   report.add_table(std::move(table));
   report.add_paragraph(fmt::format(
-      "All indicators are band-limited to {} Hz, the highest frequency that the soil model resolves: they "
-      "hold "
-      "what the model holds and are lower bounds of what a broad-band instrument would show. PPV: largest "
+      "{} An instrument of a wider band may show more or, for a peak, less. PPV: largest "
       "magnitude of each velocity component and of the vector. KB_Fmax: DIN 45669-1, of the vertical "
       "velocity, "
       "dimensionless. VdB: largest 1 s rms of the vertical velocity as a level re 10⁻⁶ in/s. Strongest band: "
       "one-third "
       "octave "
       "band with the highest rms of v_z.",
-      highest));
+      band_text(ground.read_number_attribute("highest_frequency"))));
   report.add_note(
       "Assessment by DIN 4150-2 or a similar standard applies to rooms, not to the free field: coupling to a "
       "building and its floors changes levels by several dB either way. Predictions of absolute levels are "

@@ -86,7 +86,29 @@ void add_parameters(visu::Report& report, const char* title, const ResultReader&
   report.add_parameters(std::move(parameters));
 }
 
-void add_limits(visu::Report& report, const ResultReader* track, const ResultReader* ground) {
+/// The material damping by the row of the parameters that names the model.
+std::string damping_text(const ResultReader& ground) {
+  std::optional<double> model, frequency;
+  for_each_object(ground, "/parameters", [&](const json::Value& v) {
+    const std::string& name = v.at("name").string();
+    if (name.starts_with("material damping")) model = v.at("value").number();
+    if (name.starts_with("frequency of the damping ratios")) frequency = v.at("value").number();
+  });
+  const std::string at = frequency ? visu::short_number_text(*frequency) + " Hz" : "the frequency given";
+  if (!model) return "the file does not say how material damping was modelled";
+  if (*model == 0) return "there is no material damping";
+  if (*model == 1)
+    return fmt::format(
+        "material damping grows in proportion to frequency from the ratios of the site file at {}", at);
+  return fmt::format(
+      "material damping nearly keeps the ratios of the site file, from a tenth of the highest frequency to "
+      "it; "
+      "ratios and wave speeds hold at {}",
+      at);
+}
+
+void add_limits(visu::Report& report, const ResultReader* track, const ResultReader* ground,
+                bool has_comparison) {
   report.add_section("Limits and assumptions");
   std::vector<std::string> limits;
   if (track) {
@@ -99,18 +121,18 @@ void add_limits(visu::Report& report, const ResultReader* track, const ResultRea
         "track was "
         "in the ground before. Uplift can therefore make a reaction slightly negative.");
     limits.push_back(
-        "The foundation of step 1 has parameters that do not depend on frequency. It follows the soil up to "
-        "a "
-        "frequency that depends on the site; the recoupling error says how well in this run.");
+        std::string("The foundation of step 1 has parameters that do not depend on frequency. It follows the "
+                    "soil up to a frequency that depends on the site") +
+        (has_comparison ? "; the recoupling error says how well in this run." : "."));
   }
   if (ground) {
     limits.push_back(
-        fmt::format("Nothing is claimed above {} Hz: the mesh of the soil does not resolve it.",
-                    visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
+        fmt::format("Nothing is claimed above {} Hz: the mesh of the soil does not resolve it. {}",
+                    visu::short_number_text(ground->read_number_attribute("highest_frequency")),
+                    report::band_text(ground->read_number_attribute("highest_frequency"))));
     limits.push_back(
-        "The ground consists of horizontal, homogeneous, linear, isotropic layers; material damping is that "
-        "of the "
-        "site file. Loads fade out towards both ends of the loaded track, so receivers beyond them see too "
+        "The ground consists of horizontal, homogeneous, linear, isotropic layers; " + damping_text(*ground) +
+        ". Loads fade out towards both ends of the loaded track, so receivers beyond them see too "
         "little.");
     limits.push_back("The result is the free field: no building, no foundation of a building, no floors.");
     limits.push_back(
@@ -137,8 +159,13 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
   const ResultReader *track = track_file ? &*track_file : nullptr,
                      *ground = ground_file ? &*ground_file : nullptr;
 
-  const auto comparison =
-      track && ground ? report::compare_displacements(*track, *ground) : std::optional<report::Comparison>();
+  std::optional<report::Comparison> comparison;
+  std::string no_comparison;
+  try {
+    if (track && ground) comparison = report::compare_displacements(*track, *ground);
+  } catch (const ModelError& error) {
+    no_comparison = error.what();
+  }
 
   visu::Report report(
       !ground  ? "Passage over the track"
@@ -160,21 +187,25 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
     for (const std::string& warning : track->read_names("/warnings"))
       report.add_note("Warning: " + warning + ".");
   if (ground)
-    report.add_note(fmt::format(
-        "Free-field prediction, band-limited to {} Hz. Absolute levels are no better than about 10 dB.",
-        visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
+    report.add_note(
+        fmt::format("Free-field prediction, band-limited to {} Hz with a roll-off above it. Absolute levels "
+                    "are no better than about 10 dB.",
+                    visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
+  if (track && ground && ground->read_text_attribute("created") < track->read_text_attribute("created"))
+    report.add_note("The ground was computed before this passage: run `soil run` again.");
   if (track) {
     add_animation(report, *track);
     report::add_track_section(report, *track);
   }
   if (ground) report::add_ground_section(report, *ground);
   if (comparison) report::add_recoupling_section(report, *comparison);
+  if (!no_comparison.empty()) report.add_paragraph("Both steps are not compared: " + no_comparison + ".");
 
   report.add_section("Parameters and their sources");
   if (track) add_parameters(report, "Vehicle, track and passage", *track);
   if (ground) add_parameters(report, "Ground", *ground);
   if (ground && ground->has("/site")) report.add_text("Site file, as read", ground->read_text("/site"));
-  add_limits(report, track, ground);
+  add_limits(report, track, ground, comparison.has_value());
   report.write(html);
 }
 

@@ -19,6 +19,11 @@ std::string percent(double ratio) {
   return number_text(100 * ratio, 2);
 }
 
+// To the microsecond, so that a sum of steps that should be 0 is.
+std::string time_text(double t) {
+  return visu::short_number_text(std::round(1e6 * t) / 1e6 + 0.0);
+}
+
 }  // namespace
 
 std::optional<Comparison> compare_displacements(const ResultReader& track, const ResultReader& ground) {
@@ -43,9 +48,7 @@ std::optional<Comparison> compare_displacements(const ResultReader& track, const
       of_soil.push_back(f);
     }
   }
-  if (of_soil.empty())
-    throw InputError(fmt::format("{} and {}: no footprint lies under a sleeper", track.path().string(),
-                                 ground.path().string()));
+  if (of_soil.empty()) throw ModelError("recoupling error: no footprint lies under a sleeper");
   Comparison c{track.read_vector("/time"),
                ground.read_vector("/time"),
                footprints(of_soil),
@@ -76,12 +79,12 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
         {"quasi-static, below 2 Hz", percent(c.error.quasi_static.l2), percent(c.error.quasi_static.peak)},
         {"dynamic, above 2 Hz", percent(c.error.dynamic.l2), percent(c.error.dynamic.peak)}},
        fmt::format("Recoupling error over {} sleepers under their full load, from t = {} s to {} s",
-                   c.error.footprints, visu::short_number_text(c.error.from),
-                   visu::short_number_text(c.error.to))});
+                   c.error.footprints, time_text(c.error.from), time_text(c.error.to))});
   report.add_paragraph(
       "Relative to the displacement of the soil. The quasi-static part depends on how far away the soil "
       "model "
-      "ends: a box of finite elements on a fixed boundary is stiffer than the ground. Downward is positive "
+      "ends: a box of finite elements held by springs and dashpots stands for the ground beyond it only "
+      "roughly. Downward is positive "
       "in the figures.");
 
   // four sleepers, evenly spread over those under their full load

@@ -31,7 +31,7 @@ struct Comparison {
 };
 
 /// Nothing if the files do not hold both displacements (a track on rigid ground).
-/// @throws InputError if no footprint lies under a sleeper
+/// @throws ModelError if no footprint lies under a sleeper, or as compute_recoupling_error()
 std::optional<Comparison> compare_displacements(const results::ResultReader& track,
                                                 const results::ResultReader& ground);
 void add_recoupling_section(visu::Report& report, const Comparison& comparison);

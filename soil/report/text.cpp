@@ -17,4 +17,11 @@ std::string name_of(const std::vector<std::string>& names, Eigen::Index i, const
   return size_t(i) < names.size() ? names[size_t(i)] : fmt::format("{} {}", what, i + 1);
 }
 
+std::string band_text(double highest_frequency) {
+  return fmt::format(
+      "The loads are passed unchanged up to {} Hz and rolled off to zero at {} Hz; what lies above is not in "
+      "the figures.",
+      visu::short_number_text(highest_frequency), visu::short_number_text(1.25 * highest_frequency));
+}
+
 }  // namespace easydyn::soil::report

@@ -18,4 +18,7 @@ std::vector<Eigen::Index> spread(Eigen::Index n, Eigen::Index count);
 /// Name `i`, or "what i+1" where names are missing.
 std::string name_of(const std::vector<std::string>& names, Eigen::Index i, const std::string& what);
 
+/// What the figures hold of the loads (limit_band()): up to which frequency all, above which nothing.
+std::string band_text(double highest_frequency);
+
 }  // namespace easydyn::soil::report
