@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easydyn/error.hpp"
+#include "tests/soil/ring_down.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -63,22 +64,26 @@ TEST(WaveSolver, GivesTheSameMotionInTheHalfModel) {
   Site site = small_site();
   site.receivers.push_back({"mirror", {-0.7, -3.2, -0.8}});
   const SurfaceLoads loads = pulse({{0.2, 0, 0.6, 2.4}});
-  SolverOptions options = small_options();
   // The lattices must match: make the full one symmetric with an even number of elements across.
   site.margin = 0.5;
-  const GroundMotion half = WaveSolver(site, loads, options).run();
-  options.half_model = false;
-  WaveSolver full_solver(site, loads, options);
-  const Lattice& lattice = full_solver.lattice();
-  ASSERT_EQ(lattice.ny() % 2, 0);
-  ASSERT_NEAR(lattice.y.front(), -lattice.y.back(), 1e-12);
-  const GroundMotion full = full_solver.run();
-  EXPECT_LT(relative_difference(half.vx, full.vx), 1e-10);
-  EXPECT_LT(relative_difference(half.vy, full.vy), 1e-10);
-  EXPECT_LT(relative_difference(half.vz, full.vz), 1e-10);
-  EXPECT_LT(relative_difference(half.footprint_displacement, full.footprint_displacement), 1e-10);
-  EXPECT_LT(relative_difference(2 * half.energy, full.energy), 1e-10);
-  EXPECT_LT((half.vy.col(1) + half.vy.col(2)).cwiseAbs().maxCoeff(), 1e-15);
+  for (const bool double_precision : {true, false}) {
+    SolverOptions options = small_options();
+    options.double_precision = double_precision;
+    const double tolerance = double_precision ? 1e-10 : 1e-4;  // single: rounding, 5e-5 measured
+    const GroundMotion half = WaveSolver(site, loads, options).run();
+    options.half_model = false;
+    WaveSolver full_solver(site, loads, options);
+    const Lattice& lattice = full_solver.lattice();
+    ASSERT_EQ(lattice.ny() % 2, 0);
+    ASSERT_NEAR(lattice.y.front(), -lattice.y.back(), 1e-12);
+    const GroundMotion full = full_solver.run();
+    EXPECT_LT(relative_difference(half.vx, full.vx), tolerance);
+    EXPECT_LT(relative_difference(half.vy, full.vy), tolerance);
+    EXPECT_LT(relative_difference(half.vz, full.vz), tolerance);
+    EXPECT_LT(relative_difference(half.footprint_displacement, full.footprint_displacement), tolerance);
+    EXPECT_LT(relative_difference(2 * half.energy, full.energy), tolerance);
+    EXPECT_LT((half.vy.col(1) + half.vy.col(2)).cwiseAbs().maxCoeff(), 1e-15);
+  }
 }
 
 TEST(WaveSolver, IsReciprocal) {
@@ -112,33 +117,65 @@ TEST(WaveSolver, NeedsNoDoublePrecisionForTheField) {
 }
 
 TEST(WaveSolver, LosesEnergyOnceTheLoadStops) {
-  Site site = small_site();
-  site.duration = 0.5;
-  const GroundMotion motion = WaveSolver(site, pulse({{0, 0, 0.6, 2.4}}), small_options()).run();
-  for (Eigen::Index i = 52; i < motion.energy.size(); ++i)
-    EXPECT_LE(motion.energy(i), motion.energy(i - 1) * (1 + 1e-12)) << "t = " << motion.time(i);
+  for (const DampingModel model :
+       {DampingModel::none, DampingModel::stiffness_proportional, DampingModel::constant_ratio}) {
+    Site site = small_site();
+    for (Layer& layer : site.layers) layer.damping = 0.05;
+    site.duration = 0.3;
+    SolverOptions options = small_options();
+    options.damping = model;
+    const GroundMotion motion = WaveSolver(site, pulse({{0, 0, 0.6, 2.4}}), options).run();
+    for (Eigen::Index i = 52; i < motion.energy.size(); ++i)
+      EXPECT_LE(motion.energy(i), motion.energy(i - 1) * (1 + 1e-12))
+          << "model " << static_cast<int>(model) << ", t = " << motion.time(i);
+  }
 }
 
-TEST(WaveSolver, DampsByTheStatedRatio) {
-  // Plane waves decay by exp(-xi k x) in amplitude; here: damping lowers the motion, both models alike at the
-  // damping frequency (pulse of 0.1 s: about 10 Hz).
+/// A free bar of 6 m x 1 m x 1 m on which a pulse in the middle starts the lowest bending vibration: about 4 Hz,
+/// and the pulse of 0.3 s leaves the next symmetric one, four times higher, below 1 % of it.
+test::RingDown ring_bar(DampingModel model, double ratio, double damping_frequency) {
   Site site = small_site();
-  site.receivers = {{"far", {6, 0, 0}}};
-  site.damping_frequency = 10;
-  site.duration = 0.25;
-  const SurfaceLoads loads = pulse({{0, 0, 0.6, 2.4}});
+  site.layers = {site.layers[0]};
+  site.layers[0].damping = ratio;
+  site.damping_frequency = damping_frequency;
+  site.points_per_wavelength = 15;
+  site.margin = 0.5;
+  site.receivers = {{"left", {-2.5, 0, 0}}, {"right", {2.5, 0, 0}}};
+  site.duration = 5.5;
+  SurfaceLoads loads = pulse({{0, 0, 0.4, 0.4}});
+  loads.time *= 3;
   SolverOptions options = small_options();
-  const auto peak = [&](DampingModel model, double ratio) {
-    for (Layer& layer : site.layers) layer.damping = ratio;
-    options.damping = model;
-    return WaveSolver(site, loads, options).run().vz.cwiseAbs().maxCoeff();
-  };
-  const double none = peak(DampingModel::none, 0.05);
-  const double constant = peak(DampingModel::constant_ratio, 0.05);
-  const double proportional = peak(DampingModel::stiffness_proportional, 0.05);
-  EXPECT_LT(constant, 0.97 * none);
-  EXPECT_LT(proportional, 0.97 * none);
-  EXPECT_NEAR(constant, proportional, 0.05 * none);
+  options.sponge_elements = 0;
+  options.dashpots = false;
+  options.damping = model;
+  const GroundMotion motion = WaveSolver(site, loads, options).run();
+  const std::vector<double> v(motion.vz.col(0).begin(), motion.vz.col(0).end());
+  return test::measure_ring_down(v, options.output_step, 1.8, 10);
+}
+
+// Tolerances: the decaying vibration sees the modulus at a complex frequency, which adds up to 2 xi / pi =
+// 1.9 % to the ratio; the remains of the higher vibration and the memory variables' start some 0.3 %.
+TEST(WaveSolver, DampsByTheStatedRatio) {
+  const test::RingDown elastic = ring_bar(DampingModel::none, 0.03, 20);
+  const double f = elastic.frequency, ratio = 0.03;
+  ASSERT_GT(f, 2.5);  // well inside the band of 2 to 20 Hz
+  ASSERT_LT(f, 8);
+  EXPECT_NEAR(elastic.ratio, 0, 0.005 * ratio);
+
+  const test::RingDown constant = ring_bar(DampingModel::constant_ratio, ratio, f);
+  EXPECT_NEAR(constant.ratio, ratio, 0.02 * ratio);
+  EXPECT_NEAR(constant.frequency, f, 1e-3 * f);  // xi^2 / 2
+  const test::RingDown proportional = ring_bar(DampingModel::stiffness_proportional, ratio, f);
+  EXPECT_NEAR(proportional.ratio, ratio, 0.02 * ratio);
+  EXPECT_NEAR(proportional.frequency, f, 1e-3 * f);
+
+  // Stated at twice the frequency: the ratio is the same (5 % for two mechanisms, and the 2 % above), the ground
+  // slower by 2 xi / pi per factor e in frequency; or the ratio is half.
+  const test::RingDown below = ring_bar(DampingModel::constant_ratio, ratio, 2 * f);
+  EXPECT_NEAR(below.ratio, ratio, 0.07 * ratio);
+  EXPECT_NEAR(below.frequency / f - 1, -2 * ratio / M_PI * std::log(2.0), 2e-3);
+  EXPECT_NEAR(ring_bar(DampingModel::stiffness_proportional, ratio, 2 * f).ratio, ratio / 2,
+              0.02 * ratio / 2);
 }
 
 TEST(WaveSolver, SaysWhatItWillCost) {
