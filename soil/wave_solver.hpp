@@ -53,7 +53,8 @@ struct GroundMotion {
   Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
   Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, downward
   Eigen::VectorXd taper;                   ///< nl: factor on each load
-  Eigen::VectorXd energy;                  ///< nt [J] kinetic + strain energy (of the half model if one)
+  Eigen::VectorXd energy;                  ///< nt [J] kinetic + u . K w / 2 (w below; strain energy where
+                                           ///< undamped), of the half model if one
 };
 
 /// Waves in a layered half-space under surface loads: 3D spectral elements, explicit leapfrog.

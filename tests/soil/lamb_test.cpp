@@ -18,6 +18,7 @@ TEST(LambReference, AgreesWithPekerisAndTheStaticLimits) {
   EXPECT_NEAR(lamb.vertical(0.90), -0.00907218, 1e-8);
   EXPECT_NEAR(lamb.vertical(0.99), -0.02558260, 1e-8);
   EXPECT_NEAR(lamb.vertical(1.01), -0.03802151, 1e-8);
+  EXPECT_NEAR(lamb.vertical(1.04), -0.08011506, 1e-8);
   EXPECT_NEAR(lamb.vertical(1.06), -0.14125434, 1e-8);
   EXPECT_NEAR(lamb.vertical(1.10), 0.11936621, 1e-8);
   EXPECT_NEAR(lamb.rayleigh_slowness(), 1.0876639, 1e-7);
