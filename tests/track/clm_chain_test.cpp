@@ -52,14 +52,22 @@ TEST(ClmChain, FollowsTheLatticeFormulaAtAllFrequencies) {
 }
 
 TEST(ClmChain, TakesAnotherBranchThanThePrincipalRootAtHighFrequency) {
-  // the naive root 1 + s - sqrt(s^2 + 2 s) leaves the unit circle: the reason for choosing by modulus
-  bool left = false;
+  // The naive root 1 + s - sqrt(s^2 + 2 s) leaves the unit circle at some frequencies: there L is its
+  // inverse, and H_00 = 1 / (K_f + 2 K_c (1 - L)) after the balance of the loaded foundation follows.
+  int inside = 0, outside = 0;
   for (double f = 10; f < 300; f += 10) {
     const ChainStiffness c = chain_stiffness(half_space, 2 * pi * f);
-    const Complex s = 0.5 * c.K_f / c.K_c;
-    left = left || std::abs(1.0 + s - std::sqrt(s * s + 2.0 * s)) > 1;
+    const Complex s = 0.5 * c.K_f / c.K_c, naive = 1.0 + s - std::sqrt(s * s + 2.0 * s);
+    const bool is_outside = std::abs(naive) > 1;
+    ++(is_outside ? outside : inside);
+    const ChainCompliance chain = compute_infinite_chain(c);
+    const Complex L = is_outside ? 1.0 / naive : naive;
+    // 1e-13: the naive difference loses one or two of sixteen digits
+    EXPECT_LT(std::abs(chain.L - L), 1e-13) << f << " Hz";
+    EXPECT_LT(std::abs(chain.H_00 * (c.K_f + 2.0 * c.K_c * (1.0 - L)) - 1.0), 1e-13) << f << " Hz";
   }
-  EXPECT_TRUE(left);
+  EXPECT_GT(inside, 0);
+  EXPECT_GT(outside, 0);
 }
 
 TEST(ClmChain, HasTheStaticDeflectionAndSumOfTheLattice) {

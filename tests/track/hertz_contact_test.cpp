@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "easydyn/error.hpp"
 
 using easydyn::track::HertzContact;
@@ -48,7 +50,15 @@ TEST(HertzContact, RefusesAnImpossibleConstant) {
   EXPECT_THROW(HertzContact(1e11, 0), easydyn::ModelError);
 }
 
-TEST(ZhaiContactConstant, IsNear1e11) {
-  EXPECT_NEAR(easydyn::track::zhai_contact_constant(0.46, true), 1e11, 0.3e11);
-  EXPECT_NEAR(easydyn::track::zhai_contact_constant(0.46, false), 1e11, 0.3e11);
+// Zhai's formulas (M-h), by hand for R = 0.46 m, ln R = -0.776529, K = G^-1.5; half a unit of the last digit:
+//   cone  G = 4.57e-8 exp(0.149 x 0.776529) = 4.57e-8 x 1.122662 = 5.130566e-8,  K = 8.6050e10
+//   worn  G = 3.86e-8 exp(0.115 x 0.776529) = 3.86e-8 x 1.093409 = 4.220561e-8,  K = 1.15331e11
+TEST(ZhaiContactConstant, OfAWheelOf460MillimetresIsThatWorkedOutByHand) {
+  EXPECT_NEAR(easydyn::track::zhai_contact_constant(0.46, false), 8.6050e10, 0.00005e10);
+  EXPECT_NEAR(easydyn::track::zhai_contact_constant(0.46, true), 1.15331e11, 0.000005e11);
+}
+
+TEST(ZhaiContactConstant, RefusesAnImpossibleRadius) {
+  EXPECT_THROW(easydyn::track::zhai_contact_constant(0, true), easydyn::ModelError);
+  EXPECT_THROW(easydyn::track::zhai_contact_constant(std::nan(""), false), easydyn::ModelError);
 }

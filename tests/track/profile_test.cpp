@@ -67,9 +67,16 @@ TEST(Profile, DerivativesAgreeWithDifferences) {
 
 TEST(StepProfile, IsFilteredMoreByALargeWheelThanByASmallOne) {
   const StepProfile step(0, h);
-  EXPECT_GT(step.ramp_length(0.32), step.ramp_length(0.1875));
-  EXPECT_LT(step.at(-0.01, 0.1875).r, step.at(-0.01, 0.32).r + h);
-  EXPECT_GT(step.at(-0.01, 0.32).r, step.at(-0.01, 0.1875).r);
+  // r = h - R + sqrt(R^2 - s^2) by hand at s = -10 mm, half a unit of the last digit
+  EXPECT_NEAR(step.at(-0.01, 0.32).r, 0.84371e-3, 0.5e-8);
+  EXPECT_NEAR(step.at(-0.01, 0.1875).r, 0.73314e-3, 0.5e-8);
+  // a = sqrt(h (2 R - h)): the large wheel touches sooner and rises less steeply, slope a / (R - h);
+  // 1e-5: a rounded to 0.5e-6 m
+  EXPECT_NEAR(step.ramp_length(0.1875), 19.34e-3, 0.005e-3);
+  EXPECT_EQ(step.at(-0.02, 0.1875).r, 0);
+  EXPECT_GT(step.at(-0.02, 0.32).r, 0);
+  EXPECT_NEAR(step.at(-step.ramp_length(0.1875), 0.1875).dr, 19.339e-3 / 0.1865, 1e-5);
+  EXPECT_NEAR(step.at(-step.ramp_length(0.32), 0.32).dr, 25.278e-3 / 0.319, 1e-5);
 }
 
 TEST(StepProfile, OfNoHeightIsFlat) {

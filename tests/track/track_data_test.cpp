@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "easydyn/error.hpp"
 
@@ -35,11 +36,87 @@ TEST(BundledTracks, AreValidAndStateASourceForEveryValue) {
   }
 }
 
-TEST(BundledTracks, HoldValuesOfTheWholeTrack) {
-  EXPECT_EQ(t2000_like_track().pad_stiffness, 180e6);      // 2 x 90 MN/m per rail
-  EXPECT_EQ(t2000_like_track().sleeper_mass, 180);         // 2 x 90 kg per rail
-  EXPECT_EQ(thalys_like_track().ballast_stiffness, 80e6);  // 2 x 40 MN/m per rail
-  EXPECT_EQ(thalys_like_track().sleeper_mass, 300);
+void expect_foundation(const TrackData& data, const Clm& expected) {
+  ASSERT_EQ(kind_of(data.foundation), "CLM");
+  const Clm clm = as_clm(data.foundation);
+  EXPECT_DOUBLE_EQ(clm.m_f, expected.m_f);
+  EXPECT_DOUBLE_EQ(clm.k_f, expected.k_f);
+  EXPECT_DOUBLE_EQ(clm.d_f, expected.d_f);
+  EXPECT_DOUBLE_EQ(clm.k_c, expected.k_c);
+  EXPECT_DOUBLE_EQ(clm.d_c, expected.d_c);
+}
+
+/// The choices that both bundled tracks leave at their defaults; the ends are tested in absorbing_ends_test.
+void expect_default_discretisation(const TrackData& data) {
+  EXPECT_EQ(data.elements_per_bay, 4);
+  EXPECT_EQ(data.ends.bays, 20);
+  EXPECT_EQ(data.ends.alpha, 4000);
+  EXPECT_EQ(data.ends.beta, 2e-4);
+}
+
+// Whole track, both rails together; equal but for the rounding of the unit factors.
+TEST(BundledTracks, HoldTheTramTrackOfBrussels) {
+  const TrackData track = t2000_like_track();
+  EXPECT_EQ(track.name, "t2000-like");
+  EXPECT_EQ(track.rail.name, "50E2");
+  EXPECT_EQ(track.rails, 2);
+  // Brussels tram class (M-l), per rail: pad 90 MN/m, 30 kNs/m; sleeper 90 kg; ballast 25 MN/m, 40 kNs/m
+  EXPECT_DOUBLE_EQ(track.sleeper_spacing, 0.72);
+  EXPECT_DOUBLE_EQ(track.pad_stiffness, 180e6);
+  EXPECT_DOUBLE_EQ(track.pad_damping, 60e3);
+  EXPECT_DOUBLE_EQ(track.sleeper_mass, 180);
+  EXPECT_DOUBLE_EQ(track.ballast_stiffness, 50e6);
+  EXPECT_DOUBLE_EQ(track.ballast_damping, 80e3);
+  // fit of the infinite chain on layered ground of the Brussels tram class, 2-50 Hz (C)
+  expect_foundation(track, {605, 52.1e6, 428e3, 24.3e6, -93e3});
+  // assumed: the main line's sleeper
+  EXPECT_DOUBLE_EQ(track.footprint_length, 0.285);
+  EXPECT_DOUBLE_EQ(track.footprint_width, 2.5);
+  expect_default_discretisation(track);
+}
+
+TEST(BundledTracks, HoldTheHighSpeedTrackOfAth) {
+  const TrackData track = thalys_like_track();
+  EXPECT_EQ(track.name, "thalys-like");
+  EXPECT_EQ(track.rail.name, "60E1");
+  EXPECT_EQ(track.rails, 2);
+  // Brussels-Paris line at Ath (M-h): monoblock sleepers 300 kg, 2.5 x 0.285 m, 0.6 m; pads 100 MN/m per rail
+  EXPECT_DOUBLE_EQ(track.sleeper_spacing, 0.6);
+  EXPECT_DOUBLE_EQ(track.sleeper_mass, 300);
+  EXPECT_DOUBLE_EQ(track.footprint_length, 0.285);
+  EXPECT_DOUBLE_EQ(track.footprint_width, 2.5);
+  EXPECT_DOUBLE_EQ(track.pad_stiffness, 200e6);
+  EXPECT_DOUBLE_EQ(track.pad_damping, 30e3);  // assumed: 15 kNs/m per rail
+  // railFE's default (F): 40 MN/m, 47 kNs/m per rail
+  EXPECT_DOUBLE_EQ(track.ballast_stiffness, 80e6);
+  EXPECT_DOUBLE_EQ(track.ballast_damping, 94e3);
+  // fit of the infinite chain on the layered ground of Ath, 2-50 Hz (C)
+  expect_foundation(track, {346, 27.2e6, 281e3, 12.9e6, -53e3});
+  expect_default_discretisation(track);
+}
+
+TEST(RailSections, HoldTheTabulatedValues) {
+  struct Row {
+    const char* name;
+    double area, inertia, mass_per_length, youngs_modulus;
+  };
+  const std::vector<Row> rows = {
+      {"60E1", 7.67e-3, 3.038e-5, 60.21, 210e9},    // F: STEM
+      {"UIC60", 7.67e-3, 3.038e-5, 60.21, 210e9},   // the same rail
+      {"54E1", 6.977e-3, 2.3372e-5, 54.77, 210e9},  // F: STEM
+      {"50E2", 6.365e-3, 1.9887e-5, 49.97, 210e9},  // M-m: EN 13674-1
+      {"46E3", 5.944e-3, 1.606e-5, 46.66, 210e9},   // F: STEM
+      {"CN60", 7.745e-3, 3.217e-5, 60.64, 205.9e9}  // F: TTB-2D
+  };
+  EXPECT_EQ(rail_sections().size(), rows.size());
+  for (const Row& row : rows) {
+    const RailSection& rail = rail_section(row.name);
+    EXPECT_EQ(rail.name, row.name);
+    EXPECT_DOUBLE_EQ(rail.area, row.area) << row.name;
+    EXPECT_DOUBLE_EQ(rail.inertia, row.inertia) << row.name;
+    EXPECT_DOUBLE_EQ(rail.mass_per_length, row.mass_per_length) << row.name;
+    EXPECT_DOUBLE_EQ(rail.youngs_modulus, row.youngs_modulus) << row.name;
+  }
 }
 
 TEST(SourcedValue, ForgetsItsSourceWhenTheUserChangesIt) {
