@@ -71,8 +71,8 @@ double half_a_unit_of_three_digits(double x) {
 }
 
 // Two degrees of freedom under a step load, K. J. Bathe, Finite Element Procedures, example 9.1/9.4
-// (trapezoidal rule, step 0.28): table to three digits. The book works with coefficients of three digits (a0 =
-// 51.0 for 51.02 ...), which at u1(0.56) = 0.05045 moves the third digit: 0.0505 printed.
+// (trapezoidal rule, step 0.28): table to three digits. The book works with coefficients of three digits
+// (a0 = 51.0 for 51.02 ...), which at u1(0.56) = 0.05045 moves the third digit: 0.0505 printed.
 TEST(Newmark, GivesBathesTableForTwoDegreesOfFreedom) {
   class TwoMasses : public System {
    public:

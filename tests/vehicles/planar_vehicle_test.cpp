@@ -58,8 +58,8 @@ TEST(PlanarVehicle, ReturnsToItsNominalGeometryAndAxleLoads) {
 ///    |-O 0.85
 /// Coordinates: centre body a (height a at any x, or a x), slope b of the end body about the hinge, end frame
 /// height c and slope d, centre frame e (as a); then hub and tyre of the driven, the trailing and the centre
-/// pair. An element adds 1/2 m (row y.)^2, 1/2 k (row y)^2 or 1/2 d (row y.)^2. Values: the tram's data sheet (D,
-/// M-l), retyped.
+/// pair. An element adds 1/2 m (row y.)^2, 1/2 k (row y)^2 or 1/2 d (row y.)^2. Values: the tram's
+/// data sheet (D, M-l), retyped.
 struct HalfTram {
   using Row = Eigen::RowVectorXd;
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(11, 11), C = M, K = M;
@@ -121,8 +121,8 @@ TEST(PlanarVehicle, HasTheModesOfTheTramWorkedOutByHand) {
   std::ranges::sort(by_hand, {}, [](const std::complex<double>& pole) { return std::abs(pole); });
   ASSERT_EQ(modes.size(), by_hand.size());
   for (std::size_t i = 0; i < modes.size(); ++i) {
-    // Rounding of the eigenvalues: 1e-16 of the largest entry, 1e10 N/m / 80 kg, against the smallest |pole| of
-    // 2.8 1/s gives 5e-9; measured 3e-9.
+    // rounding of the eigenvalues: 1e-16 of the largest entry, 1e10 N/m / 80 kg, against the smallest |pole|
+    // of 2.8 1/s gives 5e-9; measured 3e-9
     EXPECT_LT(std::abs(modes[i].pole - by_hand[i]), 1e-7 * std::abs(by_hand[i])) << by_hand[i];
     EXPECT_LT(modes[i].pole.real(), 0);
   }
