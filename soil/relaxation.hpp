@@ -11,7 +11,7 @@ namespace easydyn::soil {
 ///   modulus(omega) = M_u (1 - sum_l y_l omega_l / (omega_l + i omega)),   damping ratio = Im / (2 Re)
 ///
 /// The unrelaxed modulus M_u is such that Re(modulus) is the given one at the reference frequency; below it
-/// the ground is softer, above it stiffer (about 2 xi / pi per factor e in frequency), as causality demands.
+/// the ground is softer, above it stiffer (speeds by about 2 xi / pi per factor e in frequency, moduli by twice that), as causality demands.
 /// Reference: H. Emmerich, M. Korn, Geophysics 52(9), 1987 (recalled, not re-read).
 struct Relaxation {
   Eigen::VectorXd rates;    ///< omega_l [rad/s]

@@ -10,12 +10,12 @@ namespace easydyn::soil {
 /// One layer of the ground, from its top downward; the last one is a half-space.
 struct Layer {
   std::string name;
-  double thickness = 0;   ///< [m], > 0; infinite for the half-space
-  double density = 0;     ///< [kg/m3], > 0
-  double cs = 0;          ///< shear wave speed [m/s], > 0
-  double cp = 0;          ///< compression wave speed [m/s], > cs sqrt(4/3)
-  double damping = 0;     ///< damping ratio at Site::damping_frequency, 0 <= damping < 0.2
-  std::string source;     ///< provenance of the values
+  double thickness = 0;  ///< [m], > 0; infinite for the half-space
+  double density = 0;    ///< [kg/m3], > 0
+  double cs = 0;         ///< shear wave speed [m/s], > 0
+  double cp = 0;         ///< compression wave speed [m/s], > cs sqrt(4/3)
+  double damping = 0;    ///< damping ratio at Site::damping_frequency, 0 <= damping < 0.2
+  std::string source;    ///< provenance of the values
 
   double shear_modulus() const { return density * cs * cs; }
   double lame_lambda() const { return density * (cp * cp - 2 * cs * cs); }
@@ -31,16 +31,16 @@ struct Receiver {
 /// Everything that `soil run` needs besides the loads: what site.toml holds.
 struct Site {
   std::string name;
-  std::vector<Layer> layers;            ///< at least one; the last is the half-space
+  std::vector<Layer> layers;  ///< at least one; the last is the half-space
   std::vector<Receiver> receivers;
-  double highest_frequency = 50;        ///< [Hz]; the mesh resolves it, nothing above it is claimed
-  double damping_frequency = 20;        ///< [Hz] at which Layer::damping holds (stiffness-proportional damping)
-  double points_per_wavelength = 5.5;   ///< shortest shear wavelength / mean GLL spacing
-  double taper_length = 8;              ///< [m] over which loads fade out at both ends of the loaded track
-  double margin = 3;                    ///< [m] of undamped ground around loads and receivers
-  double duration = 0;                  ///< [s]; 0: as long as the loads, plus `decay_time`
-  double decay_time = 0.5;              ///< [s]
-  std::string text;                     ///< the file as read
+  double highest_frequency = 50;       ///< [Hz]; the mesh resolves it, nothing above it is claimed
+  double damping_frequency = 20;       ///< [Hz] at which Layer::damping, cs and cp hold
+  double points_per_wavelength = 5.5;  ///< shortest shear wavelength / mean GLL spacing
+  double taper_length = 8;             ///< [m] over which loads fade out at both ends of the loaded track
+  double margin = 3;                   ///< [m] of undamped ground around loads and receivers
+  double duration = 0;                 ///< [s]; 0: as long as the loads, plus `decay_time`
+  double decay_time = 0.5;             ///< [s]
+  std::string text;                    ///< the file as read
 };
 
 }  // namespace easydyn::soil
