@@ -62,7 +62,7 @@ class StaticProblem {
       for (int l = 0; l < n_ports_; ++l)
         compliance(p, l) = displacement(p, VectorXd::Unit(n_ports_, l)) - displacement(p, none);
     }
-    z.tail(n_ports_) = compliance.fullPivLu().solve(wanted);
+    if (n_ports_ > 0) z.tail(n_ports_) = compliance.fullPivLu().solve(wanted);
     return z;
   }
 
