@@ -7,7 +7,8 @@
 
 namespace easydyn::soil {
 
-/// Threads that wait for work by spinning (with yields), because a time step lasts milliseconds.
+/// Threads that wait for work: by spinning for some microseconds, because a time step lasts milliseconds, then
+/// asleep, so that a machine busy with other work is not kept from doing it.
 class ThreadTeam {
  public:
   explicit ThreadTeam(int size) : size_(size) {
@@ -15,7 +16,7 @@ class ThreadTeam {
   }
   ~ThreadTeam() {
     work_ = nullptr;
-    round_.fetch_add(1, std::memory_order_release);
+    start_round();
     for (std::thread& thread : threads_) thread.join();
   }
   ThreadTeam(const ThreadTeam&) = delete;
@@ -26,31 +27,37 @@ class ThreadTeam {
   /// Calls work(t) for t = 0 .. size - 1 at once and returns when all are done. `work` must not throw.
   void run(const std::function<void(int)>& work) {
     work_ = &work;
-    done_.store(0, std::memory_order_relaxed);
-    round_.fetch_add(1, std::memory_order_release);
+    busy_.store(size_ - 1, std::memory_order_relaxed);
+    start_round();
     work(0);
-    wait_until([this] { return done_.load(std::memory_order_acquire) == size_ - 1; });
+    for (int busy = busy_.load(std::memory_order_acquire); busy != 0;) busy = wait_for_change(busy_, busy);
   }
 
  private:
-  template <class Condition>
-  static void wait_until(Condition condition) {
-    for (int spins = 0; !condition(); ++spins)
-      if (spins > 2000) std::this_thread::yield();
+  void start_round() {
+    round_.fetch_add(1, std::memory_order_release);
+    round_.notify_all();
+  }
+  /// The new value of `variable` once it is no longer `old`.
+  static int wait_for_change(const std::atomic<int>& variable, int old) {
+    for (int spins = 0; spins < 4000; ++spins)
+      if (const int value = variable.load(std::memory_order_acquire); value != old) return value;
+    variable.wait(old, std::memory_order_acquire);
+    return variable.load(std::memory_order_acquire);
   }
   void serve(int t) {
-    for (long seen = 0;; ++seen) {
-      wait_until([this, seen] { return round_.load(std::memory_order_acquire) != seen; });
+    for (int round = 0;;) {
+      round = wait_for_change(round_, round);
       if (!work_) return;
       (*work_)(t);
-      done_.fetch_add(1, std::memory_order_acq_rel);
+      if (busy_.fetch_sub(1, std::memory_order_acq_rel) == 1) busy_.notify_one();
     }
   }
 
   int size_;
   const std::function<void(int)>* work_ = nullptr;
-  std::atomic<long> round_{0};
-  std::atomic<int> done_{0};
+  std::atomic<int> round_{0};  // may wrap around: only its change is looked at
+  std::atomic<int> busy_{0};   // threads at work besides the caller's
   std::vector<std::thread> threads_;
 };
 

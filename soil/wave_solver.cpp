@@ -30,7 +30,9 @@ void check_options(const SolverOptions& options) {
   };
   require(options.step_safety > 0 && options.step_safety <= 1,
           fmt::format("step_safety = {}, must be in 0..1", options.step_safety));
-  require(options.threads >= 0, fmt::format("threads = {}, must be >= 0 (0: all cores)", options.threads));
+  require(
+      options.threads >= 0,
+      fmt::format("threads = {}, must be >= 0 (0: one per core, fewer for a small model)", options.threads));
   require(options.output_step >= 0, fmt::format("output_step = {} s, must be >= 0", options.output_step));
   require(options.sponge_strength >= 0 && std::isfinite(options.sponge_strength),
           fmt::format("sponge_strength = {}, must be >= 0", options.sponge_strength));
@@ -84,6 +86,13 @@ Rheology make_rheology(const Site& site, DampingModel model) {
 
 double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// One thread per core, but each with enough work to be worth the two meetings of a step.
+int choose_threads(const Lattice& lattice) {
+  const long smallest_share = 30000;  // degrees of freedom: some tenths of a millisecond
+  const long cores = std::max(1L, static_cast<long>(std::thread::hardware_concurrency()));
+  return static_cast<int>(std::clamp(lattice.dofs() / smallest_share, 1L, cores));
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -162,8 +171,7 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
     boundary.origin[0] += f.x / static_cast<double>(loads.footprints.size());
     boundary.origin[1] += f.y / static_cast<double>(loads.footprints.size());
   }
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int threads = options.threads > 0 ? options.threads : cores;
+  const int threads = options.threads > 0 ? options.threads : choose_threads(lattice);
   if (options.double_precision)
     double_engine =
         std::make_unique<WaveEngine<double>>(lattice, rheology.materials, rheology.rates, boundary, threads);

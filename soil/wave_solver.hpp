@@ -24,7 +24,7 @@ struct SolverOptions {
   int degree = 4;                 ///< polynomial degree, 3..6
   bool half_model = true;         ///< only y >= 0; loads symmetric about y = 0
   double step_safety = 0.9;       ///< time step / stable limit, 0..1
-  int threads = 0;                ///< 0: all cores
+  int threads = 0;                ///< 0: one per core, fewer for a small model
   double output_step = 0;         ///< [s]; 0: 1 / (10 highest_frequency)
   bool double_precision = false;  ///< of the fields (sums are always double)
   DampingModel damping = DampingModel::constant_ratio;

@@ -12,23 +12,6 @@ namespace {
 
 using reference::Lamb;
 
-TEST(LambReference, AgreesWithPekerisAndTheStaticLimits) {
-  const Lamb lamb(0.25);  // values of Pekeris (1955) as tabulated from Kausel's closed form
-  EXPECT_NEAR(lamb.vertical(0.70), -0.00304866, 1e-8);
-  EXPECT_NEAR(lamb.vertical(0.90), -0.00907218, 1e-8);
-  EXPECT_NEAR(lamb.vertical(0.99), -0.02558260, 1e-8);
-  EXPECT_NEAR(lamb.vertical(1.01), -0.03802151, 1e-8);
-  EXPECT_NEAR(lamb.vertical(1.04), -0.08011506, 1e-8);
-  EXPECT_NEAR(lamb.vertical(1.06), -0.14125434, 1e-8);
-  EXPECT_NEAR(lamb.vertical(1.10), 0.11936621, 1e-8);
-  EXPECT_NEAR(lamb.rayleigh_slowness(), 1.0876639, 1e-7);
-  for (const double nu : {0.0, 0.2, 0.25, 0.35, 0.45}) {
-    const Lamb any(nu);
-    EXPECT_NEAR(any.radial(1e4), -(1 - 2 * nu) / (4 * M_PI), 1e-7) << "nu " << nu;  // Boussinesq, inward
-    EXPECT_NEAR(any.vertical(1 - 1e-12), any.vertical(1 + 1e-12), 1e-5) << "nu " << nu;
-  }
-}
-
 struct Errors {
   double vertical[3], radial[3];
 };
