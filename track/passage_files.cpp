@@ -5,20 +5,13 @@
 #include "easydyn/results/channels.hpp"
 #include "easydyn/results/result_file.hpp"
 #include "easydyn/visu/json.hpp"
+#include "easydyn/visu/parameter_json.hpp"
 
 namespace easydyn::track {
 
 namespace {
 
 namespace json = visu::json;
-
-std::string to_json(const std::vector<Parameter>& parameters) {
-  json::Value::Array list;
-  for (const Parameter& p : parameters)
-    list.push_back(json::object(
-        {{"group", p.group}, {"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"source", p.source}}));
-  return json::Value(std::move(list)).text();
-}
 
 std::string to_json(const std::vector<SummaryFigure>& summary) {
   json::Value::Array list;
@@ -68,7 +61,7 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
                     {"J", "work of the drive since the start", "scalar"});
 
   file.write_text("/description", description, "what was run, one sentence");
-  file.write_text("/parameters", to_json(parameters), "JSON: group, name, value, unit, source");
+  file.write_text("/parameters", visu::to_json(parameters), "JSON: group, name, value, unit, source");
   file.write_text("/summary", to_json(summary), "JSON: name, value, unit");
   if (!p.warnings.empty())
     file.write_names("/warnings", p.warnings, "where a result leaves the range of the model");

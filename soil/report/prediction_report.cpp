@@ -6,6 +6,7 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/visu/json.hpp"
+#include "easydyn/visu/parameter_json.hpp"
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
 
@@ -76,11 +77,9 @@ void add_animation(visu::Report& report, const ResultReader& track) {
 }
 
 void add_parameters(visu::Report& report, const char* title, const ResultReader& file) {
-  std::vector<Parameter> parameters;
-  for_each_object(file, "/parameters", [&](const json::Value& v) {
-    parameters.push_back({v.at("group").string(), v.at("name").string(), v.at("value").number(),
-                          v.at("unit").string(), v.at("source").string()});
-  });
+  if (!file.has("/parameters")) return;
+  std::vector<Parameter> parameters =
+      visu::parameters_from_json(file.read_text("/parameters"), file.path().string() + ":/parameters");
   if (parameters.empty()) return;
   report.add_subsection(title);
   report.add_parameters(std::move(parameters));

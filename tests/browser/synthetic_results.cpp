@@ -11,6 +11,7 @@
 
 #include "easydyn/results/result_file.hpp"
 #include "easydyn/visu/json.hpp"
+#include "easydyn/visu/parameter_json.hpp"
 #include "easydyn/visu/scene.hpp"
 
 namespace easydyn::testing {
@@ -144,12 +145,6 @@ visu::Scene scene_of(const Passage& p) {
   return scene;
 }
 
-json::Value parameter(const char* group, const char* name, double value, const char* unit,
-                      const char* source) {
-  return json::object(
-      {{"group", group}, {"name", name}, {"value", value}, {"unit", unit}, {"source", source}});
-}
-
 void write_track(const std::filesystem::path& path, const Passage& p) {
   results::ResultFile file(path,
                            {.program = "synthetic tram",
@@ -183,12 +178,10 @@ void write_track(const std::filesystem::path& path, const Passage& p) {
                     {"J", "-", "-"});
 
   file.write_text("/parameters",
-                  json::Value(json::Value::Array{
-                                  parameter("Vehicle", "body mass", 9000, "kg", "D: made up for this test"),
-                                  parameter("Vehicle", "secondary stiffness", 0.96e6, "N/m", "M-l: made up"),
-                                  parameter("Track", "sleeper spacing", 0.6, "m", "F: made up <&>"),
-                                  parameter("Track", "ballast stiffness", 32e6, "N/m", "M-m: made up")})
-                      .text(),
+                  visu::to_json({{"Vehicle", "body mass", 9000, "kg", "D: made up for this test"},
+                                 {"Vehicle", "secondary stiffness", 0.96e6, "N/m", "M-l: made up"},
+                                 {"Track", "sleeper spacing", 0.6, "m", "F: made up <&>"},
+                                 {"Track", "ballast stiffness", 32e6, "N/m", "M-m: made up"}}),
                   "parameters");
   file.write_text(
       "/summary",
@@ -267,13 +260,11 @@ void write_ground(const std::filesystem::path& path, const Passage& p) {
   file.write_vector("/footprint/x", p.sleepers.segment(10, soil.cols()), {"m", "footprints", "x"});
   file.write_matrix("/footprint/displacement", soil, {"m", "mean displacement", "downward"});
   file.write_vector("/footprint/taper", taper, {"1", "taper", "-"});
-  file.write_text(
-      "/parameters",
-      json::Value(json::Value::Array{parameter("Layer 1", "shear wave speed", 150, "m/s", "made up"),
-                                     parameter("Layer 1", "density", 1800, "kg/m3", "made up"),
-                                     parameter("Mesh", "time step", 1.3e-4, "s", "stability")})
-          .text(),
-      "parameters");
+  file.write_text("/parameters",
+                  visu::to_json({{"Layer 1", "shear wave speed", 150, "m/s", "made up"},
+                                 {"Layer 1", "density", 1800, "kg/m3", "made up"},
+                                 {"Mesh", "time step", 1.3e-4, "s", "stability"}}),
+                  "parameters");
   file.write_text("/site", "name = \"made up\"\n\n[[layer]]\ncs = 150  # <m/s>\n", "site file");
   file.commit();
 }
