@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "easydyn/error.hpp"
+#include "soil/site.hpp"
 
 namespace easydyn::soil {
 
@@ -68,8 +69,8 @@ Eigen::VectorXd compute_taper(const std::vector<Footprint>& footprints, double t
   if (length < 2 * taper_length)
     throw ModelError(
         fmt::format("site: taper_length = {} m, must be in 0..{} m, half of the loaded track "
-                    "(0: no taper)",
-                    taper_length, length / 2));
+                    "(0: no taper; {} m unless [loads] says it)",
+                    taper_length, length / 2, Site().taper_length));
   for (Eigen::Index j = 0; j < taper.size(); ++j) {
     const double x = footprints[static_cast<std::size_t>(j)].x;
     const double distance = std::min(x - first->x, last->x - x);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "easydyn/results/progress.hpp"
 #include "soil/frequency_filter.hpp"
-#include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -30,37 +30,24 @@ void add_site(std::vector<Parameter>& rows, const Site& site) {
   }
 }
 
-// Where the settings of the solver come from: a key that the site file does not hold has its default.
-class Origin {
- public:
-  explicit Origin(const Site& site) : keys_(toml::parse(site.text)) {}
-  std::string of_key(const char* table, const char* key, double value, double standard) const {
-    if (keys_[table][key]) return "site file";
-    return value == standard ? "default" : "caller";  // a site made by a program has no text
-  }
-  template <typename T>
-  static std::string of_option(const T& value, const T& standard) {
-    return value == standard ? "default" : "option";
-  }
-
- private:
-  toml::table keys_;
-};
+template <typename T>
+std::string origin_of_option(const T& value, const T& standard) {
+  return value == standard ? "default" : "option";
+}
 
 void add_settings(std::vector<Parameter>& rows, const Site& site) {
   const Site standard;
-  const Origin origin(site);
-  const auto add = [&](const char* name, const char* unit, const char* table, const char* key,
-                       double Site::*value) {
-    rows.push_back(
-        {"solver", name, site.*value, unit, origin.of_key(table, key, site.*value, standard.*value)});
+  const auto add = [&](const char* name, const char* unit, const char* key, double Site::*value) {
+    const char* const origin = site.given.contains(key)         ? "site file"
+                               : site.*value == standard.*value ? "default"
+                                                                : "caller";
+    rows.push_back({"solver", name, site.*value, unit, origin});
   };
-  add("highest frequency", "Hz", "solver", "highest_frequency", &Site::highest_frequency);
-  add("frequency of the damping ratios and wave speeds", "Hz", "solver", "damping_frequency",
-      &Site::damping_frequency);
-  add("points per shortest wavelength", "1", "solver", "points_per_wavelength", &Site::points_per_wavelength);
-  add("undamped ground around loads and receivers", "m", "solver", "margin", &Site::margin);
-  add("length over which the loads fade out", "m", "loads", "taper_length", &Site::taper_length);
+  add("highest frequency", "Hz", "highest_frequency", &Site::highest_frequency);
+  add("frequency of the damping ratios and wave speeds", "Hz", "damping_frequency", &Site::damping_frequency);
+  add("points per shortest wavelength", "1", "points_per_wavelength", &Site::points_per_wavelength);
+  add("undamped ground around loads and receivers", "m", "margin", &Site::margin);
+  add("length over which the loads fade out", "m", "taper_length", &Site::taper_length);
 }
 
 // Numbers stand for choices; the name says which.
@@ -68,7 +55,7 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
   const SolverOptions standard;
   const auto add = [&](const char* group, const char* name, const char* unit, double value,
                        double default_value) {
-    rows.push_back({group, name, value, unit, Origin::of_option(value, default_value)});
+    rows.push_back({group, name, value, unit, origin_of_option(value, default_value)});
   };
   const auto number = [](DampingModel model) {
     return model == DampingModel::none ? 0.0 : model == DampingModel::stiffness_proportional ? 1.0 : 2.0;
@@ -104,6 +91,25 @@ void add_solver(std::vector<Parameter>& rows, const Site& site, WaveSolver& solv
   add("mesh", "degrees of freedom", static_cast<double>(summary.dofs), "1");
   add("mesh", "time step", summary.time_step, "s");
   add("mesh", "steps", static_cast<double>(summary.steps), "1");
+}
+
+/// The layer that alone makes the time step less than half of what the others allow; -1: none.
+int find_dictating_layer(const Site& site, const Lattice& lattice) {
+  // A wave may not cross an element in a step; along x and y the elements are alike in all layers.
+  const auto crossing = [&](int ez) {
+    return (lattice.z[ez + 1] - lattice.z[ez]) / site.layers[lattice.layer[ez]].cp;
+  };
+  int shortest = 0;
+  for (int ez = 1; ez < lattice.nz(); ++ez) {
+    if (crossing(ez) < crossing(shortest)) shortest = ez;
+  }
+  double others = std::numeric_limits<double>::infinity();
+  for (int ez = 0; ez < lattice.nz(); ++ez) {
+    const double cp = site.layers[lattice.layer[ez]].cp;
+    const double side = std::min(lattice.x[1] - lattice.x[0], lattice.y[1] - lattice.y[0]) / cp;
+    others = std::min(others, lattice.layer[ez] == lattice.layer[shortest] ? side : crossing(ez));
+  }
+  return crossing(shortest) < 0.5 * others ? lattice.layer[shortest] : -1;
 }
 
 std::string format_memory(double bytes) {
@@ -174,6 +180,11 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
              inside(lattice.interior_y()), inside(lattice.interior_z()));
   fmt::print(out, "memory    {}\n", format_memory(summary.memory));
   fmt::print(out, "steps     {} of {:.4g} ms\n", summary.steps, 1e3 * summary.time_step);
+  if (const int layer = find_dictating_layer(site, lattice); layer >= 0) {
+    const Layer& thin = site.layers[static_cast<std::size_t>(layer)];
+    fmt::print(out, "          so short because of layer {} \"{}\", which is only {} m thick\n", layer + 1,
+               thin.name, thin.thickness);
+  }
   fmt::print(out, "expected  {}\n", results::format_duration(summary.expected_time));
   std::fflush(out);
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct Site {
   double margin = 3;                   ///< [m] of undamped ground around loads and receivers
   double duration = 0;                 ///< [s]; 0: as long as the loads, plus `decay_time`
   double decay_time = 0.5;             ///< [s]
+  std::set<std::string> given;         ///< keys of the file's settings, e.g. "margin"; none: no file
   std::string text;                    ///< the file as read
 };
 

@@ -131,17 +131,27 @@ Receiver read_receiver(TomlTable& table) {
   return receiver;
 }
 
+// A table of settings, all optional; the keys that it has are noted in the site.
+TomlTable read_group(const TomlTable& root, const char* name, const std::vector<std::string>& keys,
+                     Site& site) {
+  TomlTable group = root.table(name);
+  group.refuse_other_keys(keys);
+  for (const std::string& key : keys) {
+    if (group.has(key)) site.given.insert(key);
+  }
+  return group;
+}
+
 void read_settings(const TomlTable& root, Site& site) {
-  const TomlTable solver = root.table("solver");
-  solver.refuse_other_keys({"highest_frequency", "damping_frequency", "points_per_wavelength", "margin"});
+  const TomlTable solver = read_group(
+      root, "solver", {"highest_frequency", "damping_frequency", "points_per_wavelength", "margin"}, site);
   site.highest_frequency = solver.number("highest_frequency", "Hz", positive, site.highest_frequency);
   site.damping_frequency = solver.number("damping_frequency", "Hz", positive, site.damping_frequency);
   site.points_per_wavelength =
       solver.number("points_per_wavelength", "", {.low = 4, .high = 50}, site.points_per_wavelength);
   site.margin = solver.number("margin", "m", not_negative, site.margin);
 
-  const TomlTable loads = root.table("loads");
-  loads.refuse_other_keys({"taper_length", "duration", "decay_time"});
+  const TomlTable loads = read_group(root, "loads", {"taper_length", "duration", "decay_time"}, site);
   site.taper_length = loads.number("taper_length", "m", not_negative, site.taper_length);
   site.duration = loads.number("duration", "s", not_negative, site.duration);
   site.decay_time = loads.number("decay_time", "s", not_negative, site.decay_time);
