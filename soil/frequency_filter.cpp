@@ -75,7 +75,6 @@ Eigen::VectorXd apply_filter(const Eigen::Ref<const Eigen::VectorXd>& signal, do
 
 Eigen::MatrixXd limit_band(const Eigen::Ref<const Eigen::MatrixXd>& signals, double step,
                            double highest_frequency) {
-  constexpr double roll_off = 1.25;
   const auto response = [&](double f) -> std::complex<double> {
     const double part = (f / highest_frequency - 1) / (roll_off - 1);  // 0 ... 1 in the roll-off
     return part <= 0 ? 1.0 : part >= 1 ? 0.0 : 0.5 * (1 + std::cos(std::numbers::pi * part));

@@ -27,8 +27,11 @@ Eigen::VectorXd apply_filter(const Eigen::Ref<const Eigen::VectorXd>& signal, do
                              const std::function<std::complex<double>(double f)>& response, RecordEnds ends,
                              double settling = 0);
 
+/// Where limit_band() has nothing left, over the highest frequency.
+inline constexpr double roll_off = 1.25;
+
 /// Zero-phase low-pass of every column (`mirrored` ends): 1 up to `highest_frequency`, then half a cosine
-/// down to 0 at 1.25 times that, so that all that is claimed passes unchanged.
+/// down to 0 at `roll_off` times that, so that all that is claimed passes unchanged.
 Eigen::MatrixXd limit_band(const Eigen::Ref<const Eigen::MatrixXd>& signals, double step,
                            double highest_frequency);
 

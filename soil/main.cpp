@@ -33,7 +33,8 @@ Files (docs/formats.md describes them):
                     of the footprints. It appears when the run is complete. One from an earlier run is first
                     renamed to vibrations.previous.h5, so that a run that fails leaves none that looks new.
 
-Nothing is claimed above the highest frequency of the site file; the loads are limited to it.
+Nothing is claimed above the highest frequency of the site file: the loads are passed unchanged up to it and
+fade out to nothing at 1.25 times it, and so does the motion in vibrations.h5.
 Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options.)";
 
 const char* const report_footer = R"(
@@ -61,7 +62,8 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->required()
       ->type_name("DIR");
   command.add_flag("-n,--dry-run", run.dry_run, "Print mesh, memory, steps and expected time, and stop");
-  command.add_option("-j,--threads", run.options.threads, "Threads; 0: one per core")
+  command
+      .add_option("-j,--threads", run.options.threads, "Threads; 0: one per core, fewer for a small model")
       ->check(CLI::Range(0, 1024).description(""))
       ->capture_default_str();
   command.add_option("--degree", run.options.degree, "Polynomial degree of the elements, 3 to 6")

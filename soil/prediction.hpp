@@ -9,9 +9,9 @@
 
 namespace easydyn::soil {
 
-/// Solver of the waves that these loads send through the ground of this site. The loads are first limited to
-/// Site::highest_frequency (limit_band()): the mesh resolves nothing above it, and nothing above it is
-/// claimed.
+/// Solver of the waves that these loads send through the ground of this site. The loads are first
+/// limited by limit_band(): unchanged up to Site::highest_frequency, nothing from 1.25 times it. Nothing above
+/// Site::highest_frequency is claimed.
 /// @throws ModelError if site, loads and options do not fit
 WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
 

@@ -12,8 +12,8 @@ namespace easydyn::soil {
 
 /// A rectangle of the ground surface under uniform vertical pressure.
 struct Footprint {
-  double x = 0, y = 0;            ///< centre [m]
-  double length = 0, width = 0;   ///< along x, along y [m], > 0
+  double x = 0, y = 0;           ///< centre [m]
+  double length = 0, width = 0;  ///< along x, along y [m], > 0
 };
 
 /// Load histories on the ground surface: force(i, j) [N], positive downward, at time(i) [s] on footprint j.

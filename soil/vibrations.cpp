@@ -6,32 +6,12 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
-#include "easydyn/visu/json.hpp"
+#include "easydyn/visu/parameter_json.hpp"
+#include "soil/frequency_filter.hpp"
 #include "soil/third_octave.hpp"
 
 namespace easydyn::soil {
 namespace {
-
-namespace json = visu::json;
-
-std::string to_json(const std::vector<Parameter>& parameters) {
-  json::Value::Array rows;
-  for (const Parameter& p : parameters) {
-    rows.push_back(json::object(
-        {{"group", p.group}, {"name", p.name}, {"value", p.value}, {"unit", p.unit}, {"source", p.source}}));
-  }
-  return json::Value(std::move(rows)).text();
-}
-
-std::vector<Parameter> from_json(const std::string& text, const std::string& source) {
-  std::vector<Parameter> parameters;
-  const json::Value rows = json::parse(text, source);  // lives as long as the loop
-  for (const json::Value& row : rows.array()) {
-    parameters.push_back({row.at("group").string(), row.at("name").string(), row.at("value").number(),
-                          row.at("unit").string(), row.at("source").string()});
-  }
-  return parameters;
-}
 
 // One component of the velocities, or the like: nt x n.
 void require_shape(const char* name, const Eigen::MatrixXd& values, Eigen::Index rows, Eigen::Index columns) {
@@ -68,7 +48,8 @@ void write_indicators(results::ResultFile& file, const Vibrations& v) {
     kb(r) = indicators.kb_f_max;
     vdb(r) = indicators.vdb;
   }
-  const std::string limit = fmt::format(", band-limited to {} Hz", v.highest_frequency);
+  const std::string limit = fmt::format(", band-limited to {} Hz (rolled off to nothing at {} Hz)",
+                                        v.highest_frequency, roll_off * v.highest_frequency);
   file.write_vector("/third_octave/centre", centres,
                     {.units = "Hz",
                      .description = "exact centres of the one-third octave bands, base ten",
@@ -153,7 +134,8 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& v,
   file.write_vector(
       "/footprint/taper", v.footprint_taper,
       {.units = "1", .description = "factor by which each load was tapered", .frame = "scalar"});
-  file.write_text("/parameters", to_json(v.parameters), "JSON array of {group, name, value, unit, source}");
+  file.write_text("/parameters", visu::to_json(v.parameters),
+                  "JSON array of {group, name, value, unit, source}");
   file.write_text("/site", v.site_text, "the site file, as read");
   file.commit();
 }
@@ -169,7 +151,7 @@ Vibrations read_vibrations(const std::filesystem::path& path) {
   v.footprint_displacement = reader.read_matrix("/footprint/displacement");
   v.footprint_taper = reader.read_vector("/footprint/taper");
   v.highest_frequency = reader.read_number_attribute("highest_frequency");
-  v.parameters = from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
+  v.parameters = visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   v.site_text = reader.read_text("/site");
   const std::vector<std::string> names = reader.read_names("/receivers/names");
   const Eigen::MatrixXd position = reader.read_matrix("/receivers/position");

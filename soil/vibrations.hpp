@@ -21,7 +21,7 @@ struct Vibrations {
   Eigen::VectorXd footprint_x;             ///< nl [m]
   Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, downward
   Eigen::VectorXd footprint_taper;         ///< nl: factor on each load
-  double highest_frequency = 0;            ///< [Hz]; nothing above it is claimed
+  double highest_frequency = 0;            ///< [Hz]; nothing above it is claimed (roll-off to 1.25 x)
   std::vector<Parameter> parameters;       ///< site, mesh, boundary, time step
   std::string site_text;                   ///< the site file, as read
 };

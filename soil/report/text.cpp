@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "soil/frequency_filter.hpp"
+
 namespace easydyn::soil::report {
 
 std::vector<Eigen::Index> spread(Eigen::Index n, Eigen::Index count) {
@@ -21,7 +23,7 @@ std::string band_text(double highest_frequency) {
   return fmt::format(
       "The loads are passed unchanged up to {} Hz and rolled off to zero at {} Hz; what lies above is not in "
       "the figures.",
-      visu::short_number_text(highest_frequency), visu::short_number_text(1.25 * highest_frequency));
+      visu::short_number_text(highest_frequency), visu::short_number_text(roll_off * highest_frequency));
 }
 
 }  // namespace easydyn::soil::report

@@ -17,6 +17,7 @@ namespace {
 using easydyn::testing::TemporaryFolder;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 // A ground that is cheap to compute: long waves, two receivers.
@@ -42,6 +43,8 @@ distance = 20
 [solver]
 highest_frequency = 10
 damping_frequency = 5
+points_per_wavelength = 4
+margin = 0
 [loads]
 taper_length = 0
 decay_time = 0.2
@@ -103,8 +106,8 @@ TEST_F(SoilProgram, ComputesVibrationsAndReportsThem) {
   const Outcome outcome = run(tiny_site);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  for (const char* part : {"mesh ", "memory ", "steps ", "expected ", "waves: 100 %", "waves: done in", "10 m",
-                           "out/vibrations.h5"}) {
+  for (const char* part : {"mesh ", "memory ", "steps ", "expected ", "waves: 100 %", "waves: done in",
+                           "10 m", "out/vibrations.h5"}) {
     EXPECT_THAT(outcome.out, HasSubstr(part));
   }
 
@@ -129,6 +132,14 @@ TEST_F(SoilProgram, StopsBeforeTheRunWhenAsked) {
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("expected "));
   EXPECT_FALSE(has_result());
+}
+
+TEST_F(SoilProgram, NamesTheLayerThatMakesTheStepShort) {
+  EXPECT_THAT(run(tiny_site, "--dry-run").out, Not(HasSubstr("so short because of")));
+  std::string thin = tiny_site;
+  thin.replace(thin.find("thickness = 9"), 13, "thickness = 0.3");
+  EXPECT_THAT(run(thin, "--dry-run").out,
+              HasSubstr("so short because of layer 1 \"loam\", which is only 0.3 m thick"));
 }
 
 TEST_F(SoilProgram, SetsAnEarlierResultAsideWhenItFails) {
