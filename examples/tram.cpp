@@ -20,6 +20,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -218,8 +219,9 @@ CLI::Validator in_range(double least, double most) {
   return CLI::Validator(
       [=](std::string& text) {
         double value = 0;
-        const bool is_number = CLI::detail::lexical_cast(text, value);
-        if (is_number && value >= least && value <= most) return std::string();
+        const char* const last = text.data() + text.size();
+        const auto [end, error] = std::from_chars(text.data(), last, value);
+        if (error == std::errc() && end == last && value >= least && value <= most) return std::string();
         return fmt::format("{}, must be {:g} to {:g}", text, least, most);
       },
       "");
