@@ -115,7 +115,7 @@ int run(const Options& options, const std::string& command) {
   track::TrackData data = track::t2000_like_track();
   data.foundation = choose_foundation(options.foundation, data.foundation);
   const double loaded = 14 * m;     // the ground is loaded from -14 m to 14 m about the joint
-  const double approach = 1.5 * m;  // of the first wheel to the loaded part, and of the last one away from it
+  const double approach = 1.8 * m;  // of the first wheel to the loaded part, and of the last one away from it
   const double margin = 10 * m;     // of track beyond the wheels, before its absorbing ends
 
   // The sleepers are centred between the bays about the joint, so that x = 0 is mid-span.
@@ -143,6 +143,7 @@ int run(const Options& options, const std::string& command) {
       fmt::format("{} at {:g} km/h over a rail step of {:g} mm on {}, foundation {}", vehicle.label(),
                   options.speed, options.step_height, data.label(), track::kind_of(data.foundation));
   fmt::print("tram: {}\n", description);
+  if (options.output.empty()) throw InputError("--output is empty, must name a folder");
   std::filesystem::create_directories(options.output);  // before the work, in case it cannot be
   for (const std::string& unusual : vehicles::unusual_values(vehicle))
     fmt::print("tram: warning: {}\n", unusual);
@@ -222,7 +223,7 @@ CLI::Validator in_range(double least, double most) {
         const char* const last = text.data() + text.size();
         const auto [end, error] = std::from_chars(text.data(), last, value);
         if (error == std::errc() && end == last && value >= least && value <= most) return std::string();
-        return fmt::format("{}, must be {:g} to {:g}", text, least, most);
+        return fmt::format("{}, must be a number from {:g} to {:g}", text, least, most);
       },
       "");
 }

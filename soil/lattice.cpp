@@ -81,6 +81,13 @@ std::string describe_farthest_receiver(const Site& site) {
                      farthest->position[2]);
 }
 
+std::string describe_slowest_layer(const Site& site) {
+  const auto slowest = std::min_element(site.layers.begin(), site.layers.end(),
+                                        [](const Layer& a, const Layer& b) { return a.cs < b.cs; });
+  return fmt::format("layer {} \"{}\" with cs = {:.4g} m/s", slowest - site.layers.begin() + 1, slowest->name,
+                     slowest->cs);
+}
+
 Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
                      const LatticeOptions& options) {
   check_site(site);
@@ -111,8 +118,9 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     require(std::isfinite(foot.x) && std::isfinite(foot.y),
             fmt::format("footprint {}: x = {} m, y = {} m, must be finite", f + 1, foot.x, foot.y));
     require(!options.half_model || std::abs(foot.y) < 1e-9,
-            fmt::format("footprint {}: y = {} m, must be 0 in the half model (use the full model)", f + 1,
-                        foot.y));
+            fmt::format("footprint {}: y = {} m, must be 0 in the half model (a load off the axis needs the "
+                        "full model, option --full-model)",
+                        f + 1, foot.y));
     include(foot.x - foot.length / 2, foot.x + foot.length / 2, foot.y - foot.width / 2,
             foot.y + foot.width / 2);
   }
@@ -137,11 +145,12 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     return options.degree * cs / (site.highest_frequency * site.points_per_wavelength);
   };
   const double h = size_for(slowest);
-  require((high_x - low_x) / h < 1e5 && (high_y - low_y) / h < 1e5,
-          fmt::format(
-              "lattice: the undamped ground of {:.0f} m x {:.0f} m needs elements of {:.3g} m: too many; the "
-              "farthest receiver is {}",
-              high_x - low_x, high_y - low_y, h, describe_farthest_receiver(site)));
+  require(
+      (high_x - low_x) / h < 1e5 && (high_y - low_y) / h < 1e5,
+      fmt::format(
+          "lattice: the undamped ground of {:.0f} m x {:.0f} m needs elements of {:.3g} m: too many; the "
+          "farthest receiver is {}, the slowest ground {}",
+          high_x - low_x, high_y - low_y, h, describe_farthest_receiver(site), describe_slowest_layer(site)));
 
   Lattice lattice;
   lattice.degree = options.degree;

@@ -11,11 +11,11 @@ namespace easydyn::soil {
 
 /// How the lattice is made.
 struct LatticeOptions {
-  int degree = 4;               ///< polynomial degree of the elements, 3..6
-  bool half_model = true;       ///< only y >= 0, symmetry plane y = 0
-  int sponge_elements = 8;      ///< damped elements on each outer side (three quarters of it below), >= 0
-  double sponge_growth = 1.15;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
-  int lanes = 16;               ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
+  int degree = 4;              ///< polynomial degree of the elements, 3..6
+  bool half_model = true;      ///< only y >= 0, symmetry plane y = 0
+  int sponge_elements = 8;     ///< damped elements on each outer side (three quarters of it below), >= 0
+  double sponge_growth = 1.1;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
+  int lanes = 16;              ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
 };
 
 /// Structured lattice of rectangular hexahedra with Gauss-Lobatto-Legendre nodes, graded in depth and toward
@@ -53,5 +53,6 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
 
 /// Name and position of the receiver farthest from the origin, for messages; "none" without receivers.
 std::string describe_farthest_receiver(const Site& site);
+std::string describe_slowest_layer(const Site& site);
 
 }  // namespace easydyn::soil

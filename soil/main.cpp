@@ -3,17 +3,20 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "easydyn/error.hpp"
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
+#include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -108,6 +111,9 @@ void run(RunArguments& arguments, const std::string& command_line) {
     set_aside(result);
   }
   const Site site = read_site(arguments.site);
+  for (const std::string& unusual : unusual_values(site)) {
+    fmt::print(stderr, "soil: warning: {}: {}\n", arguments.site.string(), unusual);
+  }
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
   const std::map<std::string, DampingModel> damping_models{
       {"constant", DampingModel::constant_ratio},
@@ -147,7 +153,22 @@ void write_report(const fs::path& folder) {
   fmt::print("{}\n", (folder / "report.html").string());
 }
 
+// Empty if the first word may be a command.
+std::string find_fault_of_command(const std::string& word) {
+  const std::vector<std::string> commands = {"run", "report"};
+  if (word.starts_with('-') || std::find(commands.begin(), commands.end(), word) != commands.end()) return {};
+  const std::string nearest = find_nearest(word, commands);
+  return fmt::format("no command \"{}\"{}; known: run, report", word,
+                     nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?");
+}
+
 int run_program(int argc, char** argv) {
+  if (argc > 1) {
+    if (const std::string fault = find_fault_of_command(argv[1]); !fault.empty()) {
+      fmt::print(stderr, "soil: {}\n", fault);
+      return 2;
+    }
+  }
   CLI::App app("Vibrations in the ground from loads on its surface.", "soil");
   app.set_version_flag("--version", "soil " + results::library_version());
   app.require_subcommand(1);

@@ -70,8 +70,6 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
   add("solver", "precision of the fields", "bit", options.double_precision ? 64 : 32,
       standard.double_precision ? 64 : 32);
   add("solver", "half model, y >= 0 (0 no, 1 yes)", "1", options.half_model, standard.half_model);
-  add("boundary", "sponge elements on each outer side (three quarters of it below)", "1",
-      options.sponge_elements, standard.sponge_elements);
   add("boundary", "dashpots and far-field springs on the outer faces (0 no, 1 yes)", "1", options.dashpots,
       standard.dashpots);
 }
@@ -81,6 +79,9 @@ void add_solver(std::vector<Parameter>& rows, const Site& site, WaveSolver& solv
   add_options(rows, site, solver.options());
   const RunSummary summary = solver.compute_summary();
   const Lattice& lattice = solver.lattice();
+  rows.push_back({"boundary", "sponge elements on each outer side (three quarters of it below)",
+                  static_cast<double>(lattice.sponge_y[1]), "1",
+                  solver.options().sponge_elements < 0 ? "computed" : "option"});
   const auto add = [&](const char* group, const char* name, double value, const char* unit) {
     rows.push_back({group, name, value, unit, "computed"});
   };

@@ -45,4 +45,8 @@ struct Site {
   std::string text;                    ///< the file as read
 };
 
+/// Values that are possible but so rare in soils that a slip of the unit is likelier: one sentence each, empty
+/// where nothing is unusual. Usual: density 1000 to 3000 kg/m3, cs 30 to 3000 m/s, damping 0.5 to 15 %.
+std::vector<std::string> unusual_values(const Site& site);
+
 }  // namespace easydyn::soil

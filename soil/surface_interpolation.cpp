@@ -57,8 +57,10 @@ FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footpri
   const double y1 = footprint.y + footprint.width / 2;
   if (lattice.half_model) {
     if (!(std::abs(footprint.y) < 1e-9))
-      throw ModelError(fmt::format("footprint {}: y = {} m, must be 0 in the half model (use the full model)",
-                                   number, footprint.y));
+      throw ModelError(
+          fmt::format("footprint {}: y = {} m, must be 0 in the half model (a load off the axis needs the "
+                      "full model, option --full-model)",
+                      number, footprint.y));
     y0 = 0;
   }
   const auto check = [&](const char* axis, double low, double high, std::array<double, 2> range) {

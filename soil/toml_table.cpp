@@ -178,8 +178,10 @@ double TomlTable::check_number(std::string_view key, const toml::node& node, con
   }
   const double value = *node.value<double>();
   if (!range.contains(value)) {
+    std::string accepted = range.description();
+    if (!std::isfinite(value) && accepted != "finite") accepted = "a finite number, " + accepted;
     fail_at(node.source(),
-            fmt::format("{} = {}{}{}, must be {}", key, value, *unit ? " " : "", unit, range.description()));
+            fmt::format("{} = {}{}{}, must be {}", key, value, *unit ? " " : "", unit, accepted));
   }
   return value;
 }

@@ -34,6 +34,8 @@ void check_options(const SolverOptions& options) {
       options.threads >= 0,
       fmt::format("threads = {}, must be >= 0 (0: one per core, fewer for a small model)", options.threads));
   require(options.output_step >= 0, fmt::format("output_step = {} s, must be >= 0", options.output_step));
+  require(options.sponge_elements >= -1,
+          fmt::format("sponge_elements = {}, must be >= 0, or -1 (chosen)", options.sponge_elements));
   require(options.sponge_strength >= 0 && std::isfinite(options.sponge_strength),
           fmt::format("sponge_strength = {}, must be >= 0", options.sponge_strength));
   require(options.memory_limit >= 0,
@@ -86,6 +88,12 @@ Rheology make_rheology(const Site& site, DampingModel model) {
 
 double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+/// To three digits: the estimate of the stable step differs in the last ones from machine to machine.
+double round_down(double step) {
+  const double unit = std::pow(10, std::floor(std::log10(step)) - 2);
+  return std::floor(step / unit) * unit;
 }
 
 /// One thread per core, but each with enough work to be worth the two meetings of a step.
@@ -141,7 +149,11 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   LatticeOptions lattice_options;
   lattice_options.degree = options.degree;
   lattice_options.half_model = options.half_model;
-  lattice_options.sponge_elements = options.sponge_elements;
+  // A wave must find the same length of sponge whatever the size of the elements.
+  lattice_options.sponge_elements =
+      options.sponge_elements >= 0
+          ? options.sponge_elements
+          : static_cast<int>(std::lround(8 * site.points_per_wavelength / 5.5 * 4 / options.degree));
   lattice_options.sponge_growth = options.sponge_growth;
   lattice = make_lattice(site, loads.footprints, lattice_options);
   for (std::size_t f = 0; f < loads.footprints.size(); ++f)
@@ -159,9 +171,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
     throw ModelError(fmt::format(
         "solver: {:.3g} million degrees of freedom need {:.3g} GB of memory, must be at most "
         "{:.3g} GB: lower highest_frequency, points_per_wavelength or margin, or bring the farthest "
-        "receiver nearer ({})",
+        "receiver nearer ({}), or look at {}",
         static_cast<double>(lattice.dofs()) * 1e-6, memory * 1e-9, limit * 1e-9,
-        describe_farthest_receiver(site)));
+        describe_farthest_receiver(site), describe_slowest_layer(site)));
 
   EngineBoundary boundary;
   boundary.sponge_strength = options.sponge_strength;
@@ -191,9 +203,15 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
                     "the smallest: is it too thin?",
                     largest, thinnest->name, thinnest->thickness));
   }
-  output_step = options.output_step > 0 ? options.output_step : 1 / (10 * site.highest_frequency);
-  steps_per_output = static_cast<long>(std::ceil(output_step / largest));
-  dt = output_step / static_cast<double>(steps_per_output);
+  if (options.output_step > 0) {
+    output_step = options.output_step;
+    steps_per_output = static_cast<long>(std::ceil(output_step / largest));
+    dt = output_step / static_cast<double>(steps_per_output);
+  } else {  // the time step decides; output as often as ten times per shortest period asks for
+    dt = round_down(largest);
+    steps_per_output = std::max(1L, static_cast<long>(1 / (10 * site.highest_frequency) / dt));
+    output_step = dt * static_cast<double>(steps_per_output);
+  }
   with_engine([&](auto& engine) { engine.set_time_step(dt); });
 
   const double duration =

@@ -23,15 +23,17 @@ enum class DampingModel {
 struct SolverOptions {
   int degree = 4;                 ///< polynomial degree, 3..6
   bool half_model = true;         ///< only y >= 0; loads symmetric about y = 0
-  double step_safety = 0.9;       ///< time step / stable limit, 0..1
+  double step_safety = 0.95;      ///< time step / stable limit, 0..1
   int threads = 0;                ///< 0: one per core, fewer for a small model
-  double output_step = 0;         ///< [s]; 0: 1 / (10 highest_frequency)
+  double output_step = 0;         ///< [s]; 0: a few steps, at most 1 / (10 highest_frequency)
   bool double_precision = false;  ///< of the fields (sums are always double)
   DampingModel damping = DampingModel::constant_ratio;
   double preload_time = 0.5;  ///< [s] before the first load sample, over which loads that start non-zero
                               ///< are brought in smoothly; not part of the output
-  int sponge_elements = 8;    ///< see LatticeOptions
-  double sponge_growth = 1.15;
+  int sponge_elements = -1;  ///< see LatticeOptions; -1: as many as make it 8 elements deep at 5.5 points per
+                             ///< wavelength and degree 4, so that a finer mesh keeps the depth
+  double sponge_growth =
+      1.1;  ///< 1.15 sends three times as much back: waves meet elements too coarse for them
   double sponge_strength =
       12;                   ///< damping at the outer edge of the sponge x its length / cs of the half-space
   bool dashpots = true;     ///< viscous dashpots (Stacey) and far-field springs on the outer faces

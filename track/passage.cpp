@@ -1,6 +1,7 @@
 #include "track/passage.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "easydyn/require.hpp"
 #include "easydyn/sim/static_equilibrium.hpp"
@@ -40,7 +41,9 @@ class PassageRecorder {
     if (has_foundation_) p_.foundation_displacement.resize(rows, ns);
     p_.contact_force.resize(rows, nw);
     p_.contact_position.resize(rows, nw);
+    p_.foundation = kind_of(track.model().data().foundation);
     p_.largest_contact_force.setZero(nw);
+    p_.smallest_contact_force.setConstant(nw, std::numeric_limits<double>::infinity());
     p_.contact_loss_time.setZero(nw);
     for (const WheelRailContact* c : contacts) p_.contact_names.push_back(c->name());
     p_.coordinates.resize(rows, system.body_size());
@@ -60,7 +63,9 @@ class PassageRecorder {
     const double h = state.t - last_time_;
     for (std::size_t w = 0; w < contacts_.size(); ++w) {
       double& largest = p_.largest_contact_force[static_cast<Index>(w)];
+      double& smallest = p_.smallest_contact_force[static_cast<Index>(w)];
       largest = std::max(largest, contacts_[w]->force());
+      smallest = std::min(smallest, contacts_[w]->force());
       if (!contacts_[w]->is_closed()) p_.contact_loss_time[static_cast<Index>(w)] += h;
     }
     if (has_last_) {

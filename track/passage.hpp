@@ -26,6 +26,8 @@ struct Passage {
   std::vector<std::string> contact_names;              ///< nw
   Eigen::MatrixXd contact_force, contact_position;     ///< nt x nw [N], [m]
   Eigen::VectorXd largest_contact_force;               ///< nw, over every time step [N]
+  std::string foundation;                              ///< kind_of() the foundation
+  Eigen::VectorXd smallest_contact_force;              ///< nw, over every time step [N]
   Eigen::VectorXd contact_loss_time;                   ///< nw, total time without contact [s]
   Eigen::VectorXd sleeper_x;                           ///< ns recorded sleepers [m]
   Eigen::MatrixXd rail_deflection;                     ///< nt x ns, above the sleepers [m]

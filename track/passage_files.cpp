@@ -34,6 +34,11 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
   file.write_matrix("/contact/position", p.contact_position,
                     {"m", "position of the contact", "x along the track"});
 
+  file.write_vector("/contact/largest", p.largest_contact_force,
+                    {"N", "largest contact force, over every time step", "compression positive"});
+  file.write_vector("/contact/smallest", p.smallest_contact_force,
+                    {"N", "smallest contact force, over every time step", "compression positive"});
+
   const std::string down = "downward";
   file.write_vector("/sleeper/x", p.sleeper_x,
                     {"m", "position of the recorded sleepers", "x along the track"});
@@ -60,6 +65,7 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
   file.write_vector("/energy/supplied", p.supplied_energy,
                     {"J", "work of the drive since the start", "scalar"});
 
+  file.write_text("/foundation/kind", p.foundation, "what the ballast rests on");
   file.write_text("/description", description, "what was run, one sentence");
   file.write_text("/parameters", visu::to_json(parameters), "JSON: group, name, value, unit, source");
   file.write_text("/summary", to_json(summary), "JSON: name, value, unit");

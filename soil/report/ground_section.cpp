@@ -103,7 +103,8 @@ void add_spectra(visu::Report& report, const ResultReader& ground, const Receive
     chart.series.push_back(
         {receivers.label(i), centre, rms.row(i).transpose().unaryExpr(&level), visu::Stroke::steps});
   chart.caption = fmt::format(
-      "Rms of v_z over the whole record in each band, as a level re 5·10\u207b\u2078 m/s. Bands above {} Hz "
+      "Rms of v_z over the whole record in each band, as a level re 5·10\u207b\u2078 m/s. Bands that reach "
+      "beyond {} Hz "
       "are not "
       "computed and left out.{}",
       visu::short_number_text(ground.read_number_attribute("highest_frequency")),

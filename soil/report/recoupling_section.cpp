@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "easydyn/error.hpp"
+#include "soil/frequency_filter.hpp"
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
 
@@ -55,9 +56,10 @@ std::optional<Comparison> compare_displacements(const ResultReader& track, const
                taper(of_soil),
                foundation(Eigen::all, of_track),
                soil(Eigen::all, of_soil),
+               ground.read_number_attribute("highest_frequency"),
                {}};
-  c.error = compute_recoupling_error(c.soil_time, c.soil, c.track_time, c.foundation, c.taper,
-                                     ground.read_number_attribute("highest_frequency"));
+  c.error =
+      compute_recoupling_error(c.soil_time, c.soil, c.track_time, c.foundation, c.taper, c.highest_frequency);
   return c;
 }
 
@@ -85,12 +87,15 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
       "model "
       "ends: a box of finite elements held by springs and dashpots stands for the ground beyond it only "
       "roughly. Downward is positive "
-      "in the figures.");
+      "in the figures, and both curves end at the highest frequency of the soil model.");
 
   // four sleepers, evenly spread over those under their full load
   std::vector<Index> full;
   for (Index j = 0; j < c.taper.size(); ++j)
     if (c.taper(j) >= 1 - 1e-9) full.push_back(j);
+  // what the table compares: both up to the highest frequency of the soil model
+  const MatrixXd foundation =
+      limit_band(c.foundation, c.track_time(1) - c.track_time(0), c.highest_frequency);
   std::vector<visu::Chart> charts;
   for (const Index k : spread(Index(full.size()) + 2, 6)) {  // the two ends drop out
     if (k == 0 || k == Index(full.size()) + 1 || charts.size() == 4) continue;
@@ -100,8 +105,7 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
          .x = {"time", "s"},
          .y = {"displacement", "mm"},
          .series = {{"soil, mean over the footprint (step 2)", c.soil_time, 1e3 * c.soil.col(j)},
-                    {"foundation u_f (step 1)", c.track_time, 1e3 * c.foundation.col(j),
-                     visu::Stroke::dashed}},
+                    {"foundation u_f (step 1)", c.track_time, 1e3 * foundation.col(j), visu::Stroke::dashed}},
          .height = 230});
   }
   report.add_charts(std::move(charts));

@@ -27,6 +27,7 @@ struct Comparison {
   Eigen::VectorXd track_time, soil_time;  ///< [s]
   Eigen::VectorXd x, taper;               ///< of the footprints that lie under a sleeper [m], [1]
   Eigen::MatrixXd foundation, soil;       ///< downward displacement, one column per footprint [m]
+  double highest_frequency = 0;           ///< of the soil model [Hz]
   RecouplingError error;
 };
 

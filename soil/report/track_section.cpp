@@ -22,11 +22,37 @@ std::vector<std::string> names_at(const ResultReader& file, const std::string& d
   return file.has(dataset) ? file.read_names(dataset) : std::vector<std::string>{};
 }
 
+/// The tenth of a second about the largest contact force, of the wheelset that feels it.
+void add_largest_impact(visu::Report& report, const MatrixXd& force, const std::vector<std::string>& names,
+                        const VectorXd& time) {
+  Index row = 0, wheelset = 0;
+  if (force.maxCoeff(&row, &wheelset) < 1.2 * force(0, wheelset)) return;  // smooth: nothing to look into
+  const double before = 0.02, length = 0.1;
+  std::vector<Index> rows;
+  for (Index i = 0; i < time.size(); ++i)
+    if (time(i) >= time(row) - before && time(i) <= time(row) - before + length) rows.push_back(i);
+  report.add_chart({.title = fmt::format("The largest impact: {}", name_of(names, wheelset, "wheelset")),
+                    .x = {"time", "s"},
+                    .y = {"contact force", "kN"},
+                    .series = {{name_of(names, wheelset, "wheelset"), time(rows), force(rows, wheelset)}},
+                    .caption = "The same force in detail."});
+}
+
 void add_contact_forces(visu::Report& report, const ResultReader& track, const VectorXd& time) {
   if (!track.has("/contact/force")) return;
   const MatrixXd force = 1e-3 * track.read_matrix("/contact/force");
   const auto names = names_at(track, "/contact/names");
   report.add_subsection("Wheel/rail contact forces");
+
+  // Impacts are shorter than the output step: the extremes are those of every time step, where the file has them.
+  const bool has_extremes = track.has("/contact/largest") && track.has("/contact/smallest");
+  const VectorXd largest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/largest"))
+                                        : VectorXd(force.colwise().maxCoeff().transpose());
+  const VectorXd smallest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/smallest"))
+                                         : VectorXd(force.colwise().minCoeff().transpose());
+  const std::string sampling = fmt::format(" Sampled every {} ms: peaks between the samples are not drawn{}.",
+                                           visu::short_number_text(1e3 * (time(1) - time(0))),
+                                           has_extremes ? "; the table has them" : "");
 
   visu::Chart chart{.title = "Contact force of each wheelset, both rails together",
                     .x = {"time", "s"},
@@ -41,7 +67,9 @@ void add_contact_forces(visu::Report& report, const ResultReader& track, const V
   } else {
     chart.caption = "Compression is positive; 0 means that the wheel has left the rail.";
   }
+  chart.caption += sampling;
   report.add_chart(std::move(chart));
+  add_largest_impact(report, force, names, time);
 
   visu::Table table{{"wheelset", "at the start [kN]", "smallest [kN]", "largest [kN]",
                      "standard deviation [kN]", "largest / start"},
@@ -50,9 +78,8 @@ void add_contact_forces(visu::Report& report, const ResultReader& track, const V
   for (Index w = 0; w < force.cols(); ++w) {
     const auto f = force.col(w);
     const double deviation = std::sqrt((f.array() - f.mean()).square().mean());
-    table.rows.push_back({name_of(names, w, "wheelset"), number_text(f(0)), number_text(f.minCoeff()),
-                          number_text(f.maxCoeff()), number_text(deviation),
-                          number_text(f.maxCoeff() / f(0))});
+    table.rows.push_back({name_of(names, w, "wheelset"), number_text(f(0)), number_text(smallest(w)),
+                          number_text(largest(w)), number_text(deviation), number_text(largest(w) / f(0))});
   }
   report.add_table(std::move(table));
 }
@@ -72,8 +99,11 @@ void add_deflections(visu::Report& report, const ResultReader& track, const Vect
   const Index at = busiest(rail);
   report.add_subsection("Deflections of the track");
 
-  const std::vector<std::pair<const char*, const char*>> parts = {
-      {"/sleeper/displacement", "sleeper"}, {"/foundation/displacement", "foundation (u_f of the CLM)"}};
+  const std::string foundation = track.has("/foundation/kind")
+                                     ? "foundation (" + track.read_text("/foundation/kind") + ")"
+                                     : "foundation";
+  const std::vector<std::pair<const char*, std::string>> parts = {{"/sleeper/displacement", "sleeper"},
+                                                                  {"/foundation/displacement", foundation}};
   Index row = 0;
   rail.col(at).maxCoeff(&row);
   visu::Chart history{.title = fmt::format("At the sleeper at x = {} m, during the passage",

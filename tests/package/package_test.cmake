@@ -12,9 +12,29 @@ function(run)
 endfunction()
 
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${prefix})
-run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -DCMAKE_PREFIX_PATH=${prefix})
+# The first program of the README, word for word: from its first #include to the end of main().
+file(STRINGS ${SOURCE}/../../../README.md readme)
+set(program "")
+set(inside NO)
+foreach(line IN LISTS readme)
+  if(line MATCHES "^    #include <easydyn/easydyn.hpp>")
+    set(inside YES)
+  endif()
+  if(inside)
+    string(REGEX REPLACE "^    " "" line "${line}")
+    string(APPEND program "${line}\n")
+    if(line STREQUAL "}")
+      break()
+    endif()
+  endif()
+endforeach()
+file(WRITE ${SCRATCH}/first.cpp "${program}")
+
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -DCMAKE_PREFIX_PATH=${prefix}
+    -DFIRST_PROGRAM=${SCRATCH}/first.cpp)
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/double_pendulum)
+run(${SCRATCH}/build/first)
 run(${SCRATCH}/build/result_file ${SCRATCH}/numbers.h5)
 
 # Nothing outside include/easydyn-2, and no private header.

@@ -146,9 +146,9 @@ TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
 
 TEST(SiteFileFault, IsANumberThatIsNotFinite) {
   EXPECT_EQ(fault_of("density = 1800", "density = nan"),
-            "site.toml:7:11: layer \"loam\": density = nan kg/m3, must be > 0");
+            "site.toml:7:11: layer \"loam\": density = nan kg/m3, must be a finite number, > 0");
   EXPECT_EQ(fault_of("thickness = 2.0", "thickness = inf"),
-            "site.toml:6:13: layer \"loam\": thickness = inf m, must be > 0");
+            "site.toml:6:13: layer \"loam\": thickness = inf m, must be a finite number, > 0");
   EXPECT_EQ(fault_of("distance = 8", "distance = nan"),
             "site.toml:21:12: receiver \"8 m\": distance = nan m, must be finite");
   EXPECT_EQ(fault_of("[1, 2, -3]", "[1, -inf, 0]"),

@@ -174,9 +174,18 @@ TEST_F(SoilProgram, RefusesANegativeStiffness) {
                  "site.toml:7:5: layer \"loam\": E = -61000000 Pa, must be > 0");
 }
 
+TEST_F(SoilProgram, WarnsOfValuesThatLookLikeAWrongUnit) {
+  std::string site = tiny_site;
+  site.replace(site.find("density = 1800"), 14, "density = 1.8");
+  const Outcome outcome = run(site, "--dry-run");
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("site.toml: layer 1 \"loam\": density = 1.8 kg/m3 is unusual"),
+                                 HasSubstr("is the unit right?")));
+}
+
 TEST_F(SoilProgram, RefusesANumberThatIsNotFinite) {
   expect_refused(run_replaced("density = 1800", "density = nan"),
-                 "site.toml:5:11: layer \"loam\": density = nan kg/m3, must be > 0");
+                 "site.toml:5:11: layer \"loam\": density = nan kg/m3, must be a finite number, > 0");
 }
 
 TEST_F(SoilProgram, RefusesALayerOfZeroThickness) {
@@ -196,7 +205,9 @@ TEST_F(SoilProgram, RefusesAGroundThatNeedsMoreMemoryThanThereIs) {
 TEST_F(SoilProgram, ReturnsTwoForWrongOptions) {
   EXPECT_EQ(call("").status, 2);
   EXPECT_EQ(call("run").status, 2);
-  EXPECT_EQ(call("walk").status, 2);
+  const Outcome misspelt = call("rum");
+  EXPECT_EQ(misspelt.status, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("no command \"rum\", did you mean \"run\"?"));
   EXPECT_EQ(run(tiny_site, "--degree 12").status, 2);
   EXPECT_EQ(run(tiny_site, "--colour").status, 2);
   EXPECT_FALSE(has_result());
