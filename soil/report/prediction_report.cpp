@@ -55,16 +55,13 @@ Facts origin(const std::string& step, const ResultReader& file) {
 
 std::vector<visu::KeyFigure> key_figures(const ResultReader* track, const ResultReader* ground,
                                          const std::optional<report::Comparison>& comparison) {
-  std::vector<visu::KeyFigure> figures;
+  std::vector<visu::KeyFigure> figures;  // what was asked first
+  if (ground) figures = report::ground_key_figures(*ground);
+  if (comparison) figures.push_back(report::recoupling_key_figure(*comparison));
   if (track)
     for_each_object(*track, "/summary", [&](const json::Value& v) {
       figures.push_back({member(v, "name"), member(v, "value"), member(v, "unit"), member(v, "remark")});
     });
-  if (ground) {
-    const auto more = report::ground_key_figures(*ground);
-    figures.insert(figures.end(), more.begin(), more.end());
-  }
-  if (comparison) figures.push_back(report::recoupling_key_figure(*comparison));
   return figures;
 }
 
