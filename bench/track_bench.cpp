@@ -61,11 +61,10 @@ BENCHMARK(banded_solve)->Name("banded_solve/tram/columns")->Arg(1)->Arg(8)->Unit
 void evaluation(benchmark::State& state) {
   TramOnTrack system;
   const State s = system.initial_state();
-  Eigen::VectorXd r(system.body_size());
+  Eigen::VectorXd r(system.equation_count());
   for (auto _ : state)
     system.compute_body_residual(
-        0, s.q.data(), s.qd.data(), s.qdd.data(), [](int, const PortShape&) { return PortMotion(); },
-        r.data());
+        System::body_state(s), [](int, const PortShape&) { return PortMotion(); }, r.data());
 }
 BENCHMARK(evaluation)->Name("evaluation/tram")->Unit(benchmark::kMicrosecond);
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "easydyn/sim/newmark.hpp"
+#include "easydyn/sim/implicit_stepper.hpp"
 #include "track/flexible_track.hpp"
 #include "track/wheel_rail_contact.hpp"
 

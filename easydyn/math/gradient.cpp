@@ -61,6 +61,14 @@ Gradient Gradient::scale(double a, const Gradient& A) {
   return g;
 }
 
+Gradient Gradient::without(const Gradient& A, int first, int count) {
+  Gradient g;
+  g.reserve(A.size_);
+  for (const Entry& e : A)
+    if (e.coordinate < first || e.coordinate >= first + count) g.data_[g.size_++] = e;
+  return g;
+}
+
 Gradient Gradient::combine(double a, const Gradient& A, double b, const Gradient& B) {
   if (B.empty()) return scale(a, A);
   if (A.empty()) return scale(b, B);

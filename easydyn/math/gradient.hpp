@@ -37,11 +37,20 @@ class Gradient {
   static Gradient combine(double a, const Gradient& A, double b, const Gradient& B);
   /// a A.
   static Gradient scale(double a, const Gradient& A);
+  /// A without the entries of `count` coordinates from `first` on.
+  static Gradient without(const Gradient& A, int first, int count);
 
   const Entry* begin() const { return data_; }
   const Entry* end() const { return data_ + size_; }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
+
+  /// df/dq_i, 0 where there is no entry.
+  double operator[](int coordinate) const {
+    for (const Entry& e : *this)
+      if (e.coordinate == coordinate) return e.value;
+    return 0;
+  }
 
   /// sum_i (df/dq_i) x_i for a vector x indexed by coordinate.
   template <class Vector>

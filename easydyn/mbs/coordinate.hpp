@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "easydyn/math/expr.hpp"
@@ -8,14 +9,29 @@ namespace easydyn {
 
 class System;
 
+/// A motion given in time: value, rate, acceleration.
+struct ImposedMotion {
+  double value = 0, rate = 0, acceleration = 0;
+};
+
 /// A generalised coordinate q_i of a system; in expressions it stands for its current value and rate.
 /// Made by `System::coordinate`.
+///
+/// A coordinate that is held (locked, or given in time) leaves the unknowns: q, qd and qdd of a State no longer
+/// contain it, and `System::holding_force` tells the generalised force that holds it. Hold and release between
+/// runs, not during one.
 class Coordinate {
  public:
   operator Expr() const;  // NOLINT: a coordinate is an expression
   double value() const;
   double rate() const;
-  int index() const { return index_; }
+  /// Where it stands in State::q. @throws ModelError if it is held
+  int index() const;
+
+  void lock(double value);                                        ///< holds it at a value
+  void prescribe(std::function<ImposedMotion(double t)> motion);  ///< moves it as given
+  void release();                                                 ///< makes it free again
+  bool is_held() const;
 
   friend Expr operator-(const Coordinate& a) { return -Expr(a); }
   friend Expr operator+(const Coordinate& a, const Expr& b) { return Expr(a) + b; }
@@ -32,8 +48,39 @@ class Coordinate {
 
  private:
   friend class System;
-  Coordinate(const System& system, int index) : system_(&system), index_(index) {}
-  const System* system_;
+  Coordinate(System& system, int number) : system_(&system), number_(number) {}
+  System* system_;
+  int number_;  // in the order of declaration
+};
+
+/// A first-order state x_i of a system, x. = f(q, qd, x, t): a current, an oil pressure, the integral of a
+/// controller. Made by `System::first_order_state`; forces() reads its value and sets its rate.
+class FirstOrderState {
+ public:
+  double value() const;
+  /// f, at each evaluation. @throws ModelError outside forces()
+  void set_rate(double f) const;
+  int index() const { return index_; }  ///< where it stands in State::x
+
+ private:
+  friend class System;
+  FirstOrderState(System& system, int index) : system_(&system), index_(index) {}
+  System* system_;
+  int index_;
+};
+
+/// A number that acts on the system from outside: a voltage, a valve, a force. Constant between calls of set();
+/// `linearize` gives the matrix of its effect. Made by `System::input`.
+class Input {
+ public:
+  double value() const;
+  void set(double value) const;
+  int index() const { return index_; }
+
+ private:
+  friend class System;
+  Input(System& system, int index) : system_(&system), index_(index) {}
+  System* system_;
   int index_;
 };
 

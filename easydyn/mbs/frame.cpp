@@ -35,6 +35,16 @@ Frame Frame::followed_by(const Motion& motion) const {
   return result;
 }
 
+ExprVector Frame::express_point(const Vector3d& p_FP) const {
+  const Vector3d p = point(p_FP);
+  return tree_ ? tree_->express_point(motion_, p) : ExprVector(p);
+}
+
+ExprVector Frame::express_direction(const Vector3d& d_F) const {
+  const Vector3d d = direction(d_F);
+  return tree_ ? tree_->express_direction(motion_, d) : ExprVector(d);
+}
+
 Vector3d Frame::angular_velocity() const {
   return tree_ ? tree_->angular_velocity(motion_) : Vector3d(Vector3d::Zero());
 }

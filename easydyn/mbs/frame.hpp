@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "easydyn/math/expr.hpp"
+#include "easydyn/math/expr_vector.hpp"
 #include "easydyn/math/spatial.hpp"
 
 namespace easydyn {
@@ -65,6 +66,11 @@ class Frame {
   const Eigen::Vector3d& origin() const { return p_; }    ///< p_0F [m], world axes
   Eigen::Vector3d point(const Eigen::Vector3d& p_FP) const { return p_ + R_ * p_FP; }  ///< p_0P [m]
   Eigen::Vector3d direction(const Eigen::Vector3d& d_F) const { return R_ * d_F; }
+
+  /// p_0P of the point P fixed in this frame, with rate, bias and gradient: for loops, constraints and forces.
+  ExprVector express_point(const Eigen::Vector3d& p_FP) const;
+  /// The direction d_F fixed in this frame, in world axes, with rate, bias and gradient.
+  ExprVector express_direction(const Eigen::Vector3d& d_F) const;
 
   /// w_0F [rad/s]; in forces() only.
   Eigen::Vector3d angular_velocity() const;

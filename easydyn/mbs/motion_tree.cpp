@@ -1,5 +1,7 @@
 #include "easydyn/mbs/motion_tree.hpp"
 
+#include <algorithm>
+
 #include "easydyn/error.hpp"
 
 namespace easydyn {
@@ -22,7 +24,8 @@ MotionTree::Scope::~Scope() {
   current_tree = previous_;
 }
 
-void MotionTree::clear() {
+void MotionTree::clear(double t) {
+  t_ = t;
   size_ = 0;
   bodies_.clear();
   energy_ = {};
@@ -52,6 +55,60 @@ void MotionTree::add_body(const Inertia& inertia, const Eigen::Matrix3d& R, cons
   bodies_.push_back({inertia, R, p, motion});
 }
 
+Twist MotionTree::screw_about(const Joint& k, const Vector3d& P) {
+  if (!k.is_rotation) return {Vector3d::Zero(), k.axis};
+  return {k.axis, k.axis.cross(P - k.point)};
+}
+
+void MotionTree::follow(int motion, const Vector3d& P, std::vector<int>& path, Twist& V, Twist& A) const {
+  path.clear();
+  for (int k = motion; k >= 0; k = joints_[static_cast<std::size_t>(k)].parent) path.push_back(k);
+  std::reverse(path.begin(), path.end());
+  for (const int i : path) {
+    const Joint& k = joints_[static_cast<std::size_t>(i)];
+    const Twist S = screw_about(k, P);
+    V += k.rate * S;
+    A += k.bias * S;
+    A += k.rate * spatial::cross(V, S);
+  }
+}
+
+ExprVector MotionTree::express_point(int motion, const Vector3d& p_0P) const {
+  thread_local std::vector<int> path;
+  Twist V, A;
+  follow(motion, p_0P, path, V, A);
+  const Vector3d acceleration = A.v + V.w.cross(V.v);  // of the material point
+  Gradient gradient[3];
+  for (const int i : path) {
+    const Joint& k = joints_[static_cast<std::size_t>(i)];
+    const Twist S = screw_about(k, p_0P);
+    for (int c = 0; c < 3; ++c)
+      if (S.v[c] != 0) gradient[c] = Gradient::combine(1, gradient[c], S.v[c], k.gradient);
+  }
+  ExprVector result;
+  for (int c = 0; c < 3; ++c)
+    result[c] = Expr::of_parts(p_0P[c], V.v[c], acceleration[c], std::move(gradient[c]));
+  return result;
+}
+
+ExprVector MotionTree::express_direction(int motion, const Vector3d& d) const {
+  thread_local std::vector<int> path;
+  Twist V, A;
+  follow(motion, Vector3d::Zero(), path, V, A);
+  const Vector3d rate = V.w.cross(d), bias = A.w.cross(d) + V.w.cross(rate);
+  Gradient gradient[3];
+  for (const int i : path) {
+    const Joint& k = joints_[static_cast<std::size_t>(i)];
+    if (!k.is_rotation) continue;
+    const Vector3d turn = k.axis.cross(d);
+    for (int c = 0; c < 3; ++c)
+      if (turn[c] != 0) gradient[c] = Gradient::combine(1, gradient[c], turn[c], k.gradient);
+  }
+  ExprVector result;
+  for (int c = 0; c < 3; ++c) result[c] = Expr::of_parts(d[c], rate[c], bias[c], std::move(gradient[c]));
+  return result;
+}
+
 void MotionTree::compute_velocities() {
   // The common point: the first body that moves. It depends on the state alone.
   O_.setZero();
@@ -63,8 +120,7 @@ void MotionTree::compute_velocities() {
 
   for (int i = 0; i < size_; ++i) {
     Joint& k = joints_[static_cast<std::size_t>(i)];
-    k.S.w = k.is_rotation ? k.axis : Vector3d::Zero();
-    k.S.v = k.is_rotation ? Vector3d(k.axis.cross(O_ - k.point)) : k.axis;
+    k.S = screw_about(k, O_);
     k.V = k.parent >= 0 ? joints_[static_cast<std::size_t>(k.parent)].V : Twist{};
     k.V += k.rate * k.S;
     k.A_bias = k.bias * k.S;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "easydyn/math/expr.hpp"
+#include "easydyn/math/expr_vector.hpp"
 #include "easydyn/math/inertia.hpp"
 #include "easydyn/math/spatial.hpp"
 
@@ -52,10 +53,20 @@ class MotionTree {
     MotionTree* previous_;
   };
 
-  void clear();
+  void clear(double t = 0);
+  double time() const { return t_; }  ///< [s] of the evaluation
   int add_rotation(int parent, const Eigen::Vector3d& axis_0, const Eigen::Vector3d& p_0, const Expr& angle);
   int add_translation(int parent, const Eigen::Vector3d& axis_0, const Expr& displacement);
   void add_body(const Inertia& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& p, int motion);
+
+  /// The point that is now at p_0P (world axes) and moves with motion k, as expressions; in positions(), too.
+  ExprVector express_point(int motion, const Eigen::Vector3d& p_0P) const;
+  /// The direction d (world axes) turned by motion k, as expressions.
+  ExprVector express_direction(int motion, const Eigen::Vector3d& d) const;
+
+  /// Number of motions so far, and the way back to it: motions made in a trial do not stay.
+  int size() const { return size_; }
+  void shrink_to(int size) { size_ = size; }
 
   /// Screws, twists and bias accelerations, once all motions and bodies are known.
   void compute_velocities();
@@ -91,8 +102,13 @@ class MotionTree {
     spatial::Inertia composite;  // backward sweep
   };
   void check_velocities() const;
+  /// Twist and bias acceleration of motion k about the point P; the motions on the way go to `path`, root first.
+  void follow(int motion, const Eigen::Vector3d& P, std::vector<int>& path, spatial::Twist& V,
+              spatial::Twist& A) const;
+  static spatial::Twist screw_about(const Joint& k, const Eigen::Vector3d& P);
 
   std::vector<Joint> joints_;
+  double t_ = 0;
   int size_ = 0;  // joints in use; the others keep their memory
   std::vector<Carried> bodies_;
   std::vector<spatial::Inertia> body_inertia_;  // about O, world axes

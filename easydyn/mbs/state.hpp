@@ -4,11 +4,14 @@
 
 namespace easydyn {
 
-/// Time [s], coordinates, rates and accelerations of a system: first the coordinates of the bodies in the
-/// order of their declaration, then those of each linear structure.
+/// Time [s] and state of a system.
 struct State {
   double t = 0;
+  /// Coordinates, rates and accelerations: first the free coordinates of the bodies in the order of their
+  /// declaration, then those of each linear structure.
   Eigen::VectorXd q, qd, qdd;
+  Eigen::VectorXd x, xd;   ///< first-order states and their rates
+  Eigen::VectorXd lambda;  ///< forces of the velocity constraints
 };
 
 /// Energies [J] and powers [W] at a state. Along a motion

@@ -10,17 +10,88 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 Coordinate::operator Expr() const {
-  return Expr::coordinate(index_, value(), rate());
+  const System::CoordinateData& c = system_->data_of(*this);
+  if (c.is_held) return Expr::of_parts(value(), c.now.rate, c.now.acceleration, Gradient::unit(c.slot));
+  return Expr::coordinate(c.slot, value(), rate());
 }
 
 double Coordinate::value() const {
   if (!system_->q_) throw ModelError("a coordinate has a value in positions() and forces() only");
-  return system_->q_[index_];
+  const System::CoordinateData& c = system_->data_of(*this);
+  return c.is_held ? c.now.value : system_->q_[c.slot];
 }
 
 double Coordinate::rate() const {
   if (!system_->qd_) throw ModelError("a coordinate has a rate in positions() and forces() only");
-  return system_->qd_[index_];
+  const System::CoordinateData& c = system_->data_of(*this);
+  return c.is_held ? c.now.rate : system_->qd_[c.slot];
+}
+
+int Coordinate::index() const {
+  const System::CoordinateData& c = system_->data_of(*this);
+  if (c.is_held)
+    throw ModelError(fmt::format("coordinate \"{}\" is held: it is not among the unknowns", c.name));
+  return c.slot;
+}
+
+void Coordinate::lock(double value) {
+  if (!std::isfinite(value))
+    throw ModelError(
+        fmt::format("coordinate \"{}\" locked at {}: must be finite", system_->data_of(*this).name, value));
+  prescribe([value](double) { return ImposedMotion{value, 0, 0}; });
+}
+
+void Coordinate::prescribe(std::function<ImposedMotion(double)> motion) {
+  System::CoordinateData& c = system_->coordinates_[static_cast<std::size_t>(number_)];
+  c.is_held = true;
+  c.imposed = std::move(motion);
+  system_->assign_slots();
+}
+
+void Coordinate::release() {
+  system_->coordinates_[static_cast<std::size_t>(number_)].is_held = false;
+  system_->assign_slots();
+}
+
+bool Coordinate::is_held() const {
+  return system_->data_of(*this).is_held;
+}
+
+double FirstOrderState::value() const {
+  if (!system_->x_) throw ModelError("a first-order state has a value in positions() and forces() only");
+  return system_->x_[index_];
+}
+
+void FirstOrderState::set_rate(double f) const {
+  if (!system_->in_forces_) throw ModelError("the rate of a first-order state is set inside forces() only");
+  system_->rates_[static_cast<std::size_t>(index_)] = f;
+}
+
+double Input::value() const {
+  return system_->inputs_[static_cast<std::size_t>(index_)].value;
+}
+
+void Input::set(double value) const {
+  System::NamedValue& input = system_->inputs_[static_cast<std::size_t>(index_)];
+  if (!std::isfinite(value))
+    throw ModelError(fmt::format("input \"{}\" = {}, must be finite", input.name, value));
+  input.value = value;
+}
+
+Frame Reaction::cut(const Frame& frame) const {
+  if (!system_->cuts_open_) return frame;
+  const int slot = system_->reactions_[static_cast<std::size_t>(number_)].slot;
+  const auto still = [slot](int i) { return Expr::of_parts(0, 0, 0, Gradient::unit(slot + i)); };
+  return frame * translate(still(0), still(1), still(2)) * rotate_x(still(3)) * rotate_y(still(4)) *
+         rotate_z(still(5));
+}
+
+const Eigen::Vector3d& Reaction::force() const {
+  return system_->reactions_[static_cast<std::size_t>(number_)].force;
+}
+
+const Eigen::Vector3d& Reaction::moment() const {
+  return system_->reactions_[static_cast<std::size_t>(number_)].moment;
 }
 
 System::System(std::string name) : name_(std::move(name)) {}
@@ -33,12 +104,70 @@ Coordinate System::coordinate(std::string name, double initial, double initial_r
   if (!std::isfinite(initial) || !std::isfinite(initial_rate))
     throw ModelError(fmt::format("coordinate \"{}\": initial value {} and rate {} must be finite", name,
                                  initial, initial_rate));
-  coordinates_.push_back({std::move(name), initial, initial_rate});
+  coordinates_.push_back({.name = std::move(name), .initial = initial, .initial_rate = initial_rate});
+  assign_slots();
   return Coordinate(*this, static_cast<int>(coordinates_.size()) - 1);
+}
+
+void System::assign_slots() {
+  free_.clear();
+  for (std::size_t i = 0; i < coordinates_.size(); ++i)
+    if (!coordinates_[i].is_held) {
+      coordinates_[i].slot = static_cast<int>(free_.size());
+      free_.push_back(static_cast<int>(i));
+    }
+  free_count_ = slot_count_ = static_cast<int>(free_.size());
+  for (CoordinateData& c : coordinates_)
+    if (c.is_held) c.slot = slot_count_++;
+  for (ReactionData& r : reactions_) {
+    r.slot = slot_count_;
+    slot_count_ += 6;
+  }
+  const std::size_t n = slot_count_ > free_count_ ? static_cast<std::size_t>(slot_count_) : 0;
+  q_all_.resize(n);
+  qd_all_.resize(n);
+  qdd_all_.resize(n);
+  r_all_.resize(n);
+}
+
+VelocityConstraint& System::velocity_constraint(std::string name) {
+  return constraints_.emplace_back(std::move(name));
+}
+
+FirstOrderState System::first_order_state(std::string name, double initial) {
+  if (!std::isfinite(initial))
+    throw ModelError(fmt::format("first-order state \"{}\": initial value {} must be finite", name, initial));
+  first_order_.push_back({std::move(name), initial});
+  rates_.push_back(0);
+  return FirstOrderState(*this, first_order_size() - 1);
+}
+
+Input System::input(std::string name, double value) {
+  inputs_.push_back({std::move(name), 0});
+  const Input input(*this, input_size() - 1);
+  input.set(value);
+  return input;
+}
+
+Reaction System::reaction(std::string name) {
+  reactions_.push_back({std::move(name), 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  assign_slots();
+  return Reaction(*this, static_cast<int>(reactions_.size()) - 1);
 }
 
 Body& System::body(std::string name, const Inertia& inertia) {
   return bodies_.emplace_back(std::move(name), inertia);
+}
+
+std::shared_ptr<LoopClosure> System::add_loop(std::string name, std::span<const double> guess) {
+  for (const auto& loop : loops_)
+    if (loop->name() == name)
+      throw ModelError(fmt::format("system \"{}\": there are two loops named \"{}\"", name_, name));
+  constexpr int first_unknown = 1 << 24;  // in gradients, beyond all coordinates
+  loops_.push_back(
+      std::make_shared<LoopClosure>(name_, std::move(name), guess, first_unknown + loop_unknowns_));
+  loop_unknowns_ += static_cast<int>(guess.size());
+  return loops_.back();
 }
 
 LinearStructure& System::structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K) {
@@ -58,7 +187,7 @@ int System::structure_offset(int k) const {
 }
 
 std::string System::coordinate_name(int i) const {
-  if (i < body_size()) return coordinates_[static_cast<std::size_t>(i)].name;
+  if (i < body_size()) return coordinates_[static_cast<std::size_t>(free_[static_cast<std::size_t>(i)])].name;
   i -= body_size();
   for (const auto& s : structures_) {
     if (i < s->size()) return fmt::format("{}[{}]", s->name(), i);
@@ -67,35 +196,58 @@ std::string System::coordinate_name(int i) const {
   return "?";
 }
 
+std::string System::equation_name(int i) const {
+  if (i < body_size()) return coordinate_name(i);
+  i -= body_size();
+  if (i < first_order_size()) return first_order_[static_cast<std::size_t>(i)].name;
+  return constraints_[static_cast<std::size_t>(i - first_order_size())].name();
+}
+
 State System::initial_state() const {
   State state;
   state.q = state.qd = state.qdd = VectorXd::Zero(size());
-  for (int i = 0; i < body_size(); ++i) {
-    state.q[i] = coordinates_[static_cast<std::size_t>(i)].initial;
-    state.qd[i] = coordinates_[static_cast<std::size_t>(i)].initial_rate;
+  for (const CoordinateData& c : coordinates_) {
+    if (c.is_held) continue;
+    state.q[c.slot] = c.initial;
+    state.qd[c.slot] = c.initial_rate;
   }
+  state.x = state.xd = VectorXd::Zero(first_order_size());
+  for (int i = 0; i < first_order_size(); ++i) state.x[i] = first_order_[static_cast<std::size_t>(i)].value;
+  state.lambda = VectorXd::Zero(constraint_size());
   return state;
 }
 
-void System::place(double t, const double* q, const double* qd, const PortMotionFunction& motion) {
+void System::place(const BodyState& state, const PortMotionFunction& motion) {
   // Coordinates and ports answer during the evaluation only, however it ends.
   struct Reset {
     System& s;
-    ~Reset() { s.q_ = s.qd_ = nullptr, s.port_motion_ = nullptr; }
+    ~Reset() {
+      s.q_ = s.qd_ = s.x_ = nullptr;
+      s.port_motion_ = nullptr;
+      s.in_forces_ = false;
+    }
   } reset{*this};
-  t_ = t;
-  q_ = q;
-  qd_ = qd;
+  t_ = state.t;
+  static const double none = 0;  // where there are no coordinates, vectors have no address
+  q_ = state.q ? state.q : &none;
+  qd_ = state.qd ? state.qd : &none;
+  x_ = state.x ? state.x : &none;
   port_motion_ = &motion;
+  if (slot_count_ > free_count_) fill_held(state);
 
   // Positions: the user's program builds the tree of motions.
-  tree_.clear();
+  tree_.clear(t_);
   ports_.clear();
   for (Body& b : bodies_) b.is_placed_ = false;
+  for (VelocityConstraint& c : constraints_) c.is_given_ = false;
   {
     MotionTree::Scope scope(tree_);
     positions();
   }
+  for (const VelocityConstraint& c : constraints_)
+    if (!c.is_given_)
+      throw ModelError(fmt::format("velocity constraint \"{}\" of system \"{}\" is not given by positions()",
+                                   c.name(), name_));
   for (const Body& b : bodies_) {
     if (!b.is_placed_)
       throw ModelError(
@@ -105,17 +257,67 @@ void System::place(double t, const double* q, const double* qd, const PortMotion
 
   // Velocities, then the user's forces, which may use them.
   tree_.compute_velocities();
+  std::fill(rates_.begin(), rates_.end(), 0.0);
+  in_forces_ = true;
   forces();
 }
 
-void System::compute_body_residual(double t, const double* q, const double* qd, const double* qdd,
-                                   const PortMotionFunction& motion, double* r) {
-  place(t, q, qd, motion);
-  tree_.compute_accelerations(qdd);
-  std::fill(r, r + body_size(), 0.0);
+// Held coordinates move as given; to the sweeps they have no rate or acceleration of their own.
+void System::fill_held(const BodyState& state) {
+  for (CoordinateData& c : coordinates_) {
+    if (!c.is_held) continue;
+    c.now = c.imposed(state.t);
+    if (!std::isfinite(c.now.value) || !std::isfinite(c.now.rate) || !std::isfinite(c.now.acceleration))
+      throw ModelError(
+          fmt::format("coordinate \"{}\": its imposed motion at t = {} s is not finite", c.name, state.t));
+  }
+  const auto n = static_cast<std::size_t>(free_count_);
+  std::fill(qd_all_.begin() + free_count_, qd_all_.end(), 0.0);
+  std::copy_n(state.qd, n, qd_all_.begin());
+  std::fill(qdd_all_.begin() + free_count_, qdd_all_.end(), 0.0);
+  if (state.qdd) std::copy_n(state.qdd, n, qdd_all_.begin());
+}
+
+void System::compute_body_residual(const BodyState& state, const PortMotionFunction& motion, double* r) {
+  place(state, motion);
+  const bool has_held = slot_count_ > free_count_;
+  double* const all = has_held ? r_all_.data() : r;
+  tree_.compute_accelerations(has_held ? qdd_all_.data() : state.qdd);
+  std::fill(all, all + slot_count_, 0.0);
   double drive_power = 0;
-  tree_.add_residual(qd, r, &drive_power);
+  tree_.add_residual(has_held ? qd_all_.data() : state.qd, all, &drive_power);
   tree_.energy().supplied += drive_power;
+
+  double* rest = r + body_size();
+  for (int i = 0; i < first_order_size(); ++i)
+    *rest++ = (state.xd ? state.xd[i] : 0.0) - rates_[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    VelocityConstraint& c = constraints_[i];
+    c.lambda_ = state.lambda ? state.lambda[i] : 0.0;
+    for (const Gradient::Entry& a : c.row()) all[a.coordinate] -= a.value * c.lambda_;
+    *rest++ = c.velocity();
+  }
+  if (has_held) std::copy_n(all, body_size(), r);
+}
+
+double System::holding_force(const Coordinate& coordinate) const {
+  const CoordinateData& c = data_of(coordinate);
+  if (!c.is_held) throw ModelError(fmt::format("coordinate \"{}\" is not held: no force holds it", c.name));
+  return r_all_[static_cast<std::size_t>(c.slot)];
+}
+
+void System::compute_reactions(const State& state) {
+  struct Open {
+    bool& flag;
+    explicit Open(bool& f) : flag(f) { flag = true; }
+    ~Open() { flag = false; }
+  } open(cuts_open_);
+  evaluate(state);
+  for (ReactionData& r : reactions_) {
+    const auto slot = static_cast<std::size_t>(r.slot);
+    r.force = Eigen::Vector3d::Map(&r_all_[slot]);
+    r.moment = Eigen::Vector3d::Map(&r_all_[slot + 3]);
+  }
 }
 
 System::PortMotionFunction System::motion_of(const State& state) const {
@@ -136,13 +338,19 @@ void System::check_size(const State& state) const {
   if (state.q.size() != size() || state.qd.size() != size() || state.qdd.size() != size())
     throw ModelError(fmt::format("system \"{}\" has {} coordinates, the state has q {}, qd {}, qdd {}", name_,
                                  size(), state.q.size(), state.qd.size(), state.qdd.size()));
+  if (state.x.size() != first_order_size() || state.xd.size() != first_order_size())
+    throw ModelError(fmt::format("system \"{}\" has {} first-order states, the state has x {}, xd {}", name_,
+                                 first_order_size(), state.x.size(), state.xd.size()));
+  if (state.lambda.size() != constraint_size())
+    throw ModelError(fmt::format("system \"{}\" has {} velocity constraints, the state has lambda {}", name_,
+                                 constraint_size(), state.lambda.size()));
 }
 
 void System::compute_residual(const State& state, Eigen::Ref<VectorXd> r) {
   check_size(state);
-  r.setZero();
-  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state),
-                        r.data());
+  scratch_.resize(equation_count());
+  compute_body_residual(body_state(state), motion_of(state), scratch_.data());
+  r.head(body_size()) = scratch_.head(body_size());
 
   // Structures: inertia, damping and stiffness less the port forces.
   for (int k = 0; k < static_cast<int>(structures_.size()); ++k) {
@@ -166,9 +374,9 @@ VectorXd System::compute_residual(const State& state) {
 
 MatrixXd System::compute_mass_matrix(const State& state) {
   check_size(state);
-  place(state.t, state.q.data(), state.qd.data(), motion_of(state));
+  place(body_state(state), motion_of(state));
   MatrixXd M = MatrixXd::Zero(size(), size());
-  tree_.add_mass_matrix(M.topLeftCorner(body_size(), body_size()));
+  add_body_mass_matrix(M.topLeftCorner(body_size(), body_size()));
   for (int k = 0; k < static_cast<int>(structures_.size()); ++k) {
     const LinearStructure& s = *structures_[static_cast<std::size_t>(k)];
     M.block(structure_offset(k), structure_offset(k), s.size(), s.size()) = MatrixXd(s.M());
@@ -179,16 +387,34 @@ MatrixXd System::compute_mass_matrix(const State& state) {
 VectorXd System::compute_bias(const State& state) {
   State without_acceleration = state;
   without_acceleration.qdd.setZero();
+  without_acceleration.lambda.setZero();
   return compute_residual(without_acceleration);
 }
 
 void System::compute_mass_and_bias(const State& state, Eigen::Ref<MatrixXd> M, Eigen::Ref<VectorXd> bias) {
-  place(state.t, state.q.data(), state.qd.data(), motion_of(state));
+  check_size(state);
+  place(body_state(state), motion_of(state));
   tree_.compute_accelerations(nullptr);
-  bias.setZero();
-  tree_.add_residual(state.qd.data(), bias.data(), nullptr);
+  if (slot_count_ > free_count_) {
+    std::fill(r_all_.begin(), r_all_.end(), 0.0);
+    tree_.add_residual(qd_all_.data(), r_all_.data(), nullptr);
+    bias = VectorXd::Map(r_all_.data(), body_size());
+  } else {
+    bias.setZero();
+    tree_.add_residual(state.qd.data(), bias.data(), nullptr);
+  }
   M.setZero();
-  tree_.add_mass_matrix(M);
+  add_body_mass_matrix(M);
+}
+
+void System::add_body_mass_matrix(Eigen::Ref<MatrixXd> M) {
+  if (slot_count_ == free_count_) {
+    tree_.add_mass_matrix(M);
+    return;
+  }
+  M_all_.setZero(slot_count_, slot_count_);
+  tree_.add_mass_matrix(M_all_);
+  M += M_all_.topLeftCorner(free_count_, free_count_);
 }
 
 EnergyBalance System::compute_energy(const State& state) {
@@ -208,9 +434,8 @@ EnergyBalance System::compute_energy(const State& state) {
 
 void System::evaluate(const State& state) {
   check_size(state);
-  VectorXd r(body_size());
-  compute_body_residual(state.t, state.q.data(), state.qd.data(), state.qdd.data(), motion_of(state),
-                        r.data());
+  scratch_.resize(equation_count());
+  compute_body_residual(body_state(state), motion_of(state), scratch_.data());
 }
 
 Port System::touch(const LinearStructure& structure, const PortShape& shape) {

@@ -11,8 +11,11 @@
 #include "easydyn/mbs/coordinate.hpp"
 #include "easydyn/mbs/frame.hpp"
 #include "easydyn/mbs/linear_structure.hpp"
+#include "easydyn/mbs/loop.hpp"
 #include "easydyn/mbs/motion_tree.hpp"
+#include "easydyn/mbs/reaction.hpp"
 #include "easydyn/mbs/state.hpp"
+#include "easydyn/mbs/velocity_constraint.hpp"
 
 namespace easydyn {
 
@@ -45,6 +48,15 @@ class System {
   /// Declares a coordinate with its value and rate at the start.
   Coordinate coordinate(std::string name, double initial = 0, double initial_rate = 0);
   Body& body(std::string name, const Inertia& inertia);
+  VelocityConstraint& velocity_constraint(std::string name);
+  FirstOrderState first_order_state(std::string name, double initial = 0);
+  Input input(std::string name, double value = 0);
+  Reaction reaction(std::string name);
+  /// Declares a closed loop with N unknowns and a guess of them.
+  template <int N>
+  Loop<N> loop(std::string name, const std::array<double, N>& guess) {
+    return Loop<N>(add_loop(std::move(name), guess));
+  }
   LinearStructure& structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K);
   /// Touches a structure at a place, inside forces(), in the same order at each evaluation. The port holds during
   /// this evaluation. @throws ModelError outside forces(), or if a coordinate of the shape is out of range
@@ -53,18 +65,27 @@ class System {
   // ---- what the system is, and its equations ----
 
   const std::string& name() const { return name_; }
-  int size() const;                                                        ///< all coordinates
-  int body_size() const { return static_cast<int>(coordinates_.size()); }  ///< those of the bodies
+  int size() const;                              ///< coordinates of State::q
+  int body_size() const { return free_count_; }  ///< those of the bodies, without the held ones
+  int first_order_size() const { return static_cast<int>(first_order_.size()); }
+  int constraint_size() const { return static_cast<int>(constraints_.size()); }
+  /// Equations of everything but structures: body_size() + first_order_size() + constraint_size().
+  int equation_count() const { return body_size() + first_order_size() + constraint_size(); }
   /// Name of coordinate i; of a structure's: "structure[k]".
   std::string coordinate_name(int i) const;
+  /// Name of equation i: of the coordinate, the first-order state or the constraint.
+  std::string equation_name(int i) const;
   const std::deque<Body>& bodies() const { return bodies_; }
+  const std::deque<VelocityConstraint>& velocity_constraints() const { return constraints_; }
+  const std::string& input_name(int i) const { return inputs_[static_cast<std::size_t>(i)].name; }
+  int input_size() const { return static_cast<int>(inputs_.size()); }
   const std::vector<std::unique_ptr<LinearStructure>>& structures() const { return structures_; }
   int structure_offset(int k) const;  ///< index of the first coordinate of structure k in q
 
   /// The state that the declarations describe: t = 0, given q and qd, qdd = 0, structures at rest.
   State initial_state() const;
 
-  /// r(q, qd, qdd, t), size() entries [N, N m]. @throws ModelError if a body is not placed by positions()
+  /// r(q, qd, qdd, t) - A^T lambda, size() entries [N, N m]. @throws ModelError if a body is not placed by positions()
   void compute_residual(const State& state, Eigen::Ref<Eigen::VectorXd> r);
   Eigen::VectorXd compute_residual(const State& state);
   /// M(q, t), size() x size(), symmetric (dense: for small systems).
@@ -75,6 +96,14 @@ class System {
   void compute_mass_and_bias(const State& state, Eigen::Ref<Eigen::MatrixXd> M,
                              Eigen::Ref<Eigen::VectorXd> bias);
   EnergyBalance compute_energy(const State& state);
+  /// f of the first-order states x. = f at the last evaluation.
+  Eigen::VectorXd first_order_rates() const {
+    return Eigen::VectorXd::Map(rates_.data(), first_order_size());
+  }
+  /// Generalised force that holds a held coordinate, at the last evaluation [N, N m].
+  double holding_force(const Coordinate& coordinate) const;
+  /// Fills the reactions at a state with its accelerations (and lambda).
+  void compute_reactions(const State& state);
   /// Places bodies and computes velocities, forces and accelerations at a state, so that `bodies()` answer.
   void evaluate(const State& state);
 
@@ -89,9 +118,18 @@ class System {
     PortMotion motion;
     double force;
   };
-  /// Residual of the bodies' coordinates alone (body_size() entries), with port motions given by `motion`.
-  void compute_body_residual(double t, const double* q, const double* qd, const double* qdd,
-                             const PortMotionFunction& motion, double* r);
+  /// State of everything but structures; pointers to so many numbers as there are of each.
+  struct BodyState {
+    double t;
+    const double *q, *qd, *qdd;
+    const double *x = nullptr, *xd = nullptr, *lambda = nullptr;
+  };
+  static BodyState body_state(const State& s) {
+    return {s.t, s.q.data(), s.qd.data(), s.qdd.data(), s.x.data(), s.xd.data(), s.lambda.data()};
+  }
+  /// The equation_count() equations of everything but structures, with port motions given by `motion`:
+  /// residual r - A^T lambda of the bodies' coordinates, x. - f, velocities phi of the constraints.
+  void compute_body_residual(const BodyState& state, const PortMotionFunction& motion, double* r);
   /// Ports touched in the last evaluation, in order.
   const std::vector<PortRecord>& ports() const { return ports_; }
 
@@ -112,24 +150,61 @@ class System {
 
  private:
   friend class Coordinate;
+  friend class FirstOrderState;
+  friend class Input;
+  friend class Reaction;
   friend class Port;
   struct CoordinateData {
     std::string name;
     double initial, initial_rate;
+    int slot = 0;  // free ones: index in q; held ones behind them, for their forces
+    bool is_held = false;
+    std::function<ImposedMotion(double)> imposed = {};
+    ImposedMotion now = {};  // of a held one, in this evaluation
   };
-  void place(double t, const double* q, const double* qd, const PortMotionFunction& motion);
+  struct NamedValue {
+    std::string name;
+    double value;
+  };
+  struct ReactionData {
+    std::string name;
+    int slot;  // of the first of six held coordinates
+    Eigen::Vector3d force, moment;
+  };
+  const CoordinateData& data_of(const Coordinate& c) const {
+    return coordinates_[static_cast<std::size_t>(c.number_)];
+  }
+  void assign_slots();
+  void place(const BodyState& state, const PortMotionFunction& motion);
+  void fill_held(const BodyState& state);
   PortMotionFunction motion_of(const State& state) const;
   void check_size(const State& state) const;
+  void add_body_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
+  std::shared_ptr<LoopClosure> add_loop(std::string name, std::span<const double> guess);
 
   std::string name_;
   std::vector<CoordinateData> coordinates_;
+  std::vector<int> free_;  // numbers of the free coordinates, by slot
+  int free_count_ = 0, slot_count_ = 0;
+  std::vector<NamedValue> first_order_, inputs_;
+  std::deque<VelocityConstraint> constraints_;
+  std::vector<ReactionData> reactions_;
+  bool cuts_open_ = false;
+  std::vector<double> rates_;                             // of the first-order states
+  std::vector<double> q_all_, qd_all_, qdd_all_, r_all_;  // by slot, where there are held ones
   std::deque<Body> bodies_;
   std::vector<std::unique_ptr<LinearStructure>> structures_;
+  std::vector<std::shared_ptr<LoopClosure>> loops_;
+  int loop_unknowns_ = 0;
   MotionTree tree_;
   std::vector<PortRecord> ports_;
+  Eigen::VectorXd scratch_;  // equations
+  Eigen::MatrixXd M_all_;    // by slot, where there are held coordinates
   double t_ = 0;
   const double* q_ = nullptr;  // during an evaluation
   const double* qd_ = nullptr;
+  const double* x_ = nullptr;
+  bool in_forces_ = false;
   const PortMotionFunction* port_motion_ = nullptr;
 };
 

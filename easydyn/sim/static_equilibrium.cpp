@@ -20,11 +20,20 @@ using Eigen::VectorXd;
 
 namespace {
 
-// The condensed static problem: z = (bodies' coordinates, port forces).
+// The condensed static problem: z = (bodies' coordinates, first-order states, port forces).
 class StaticProblem {
  public:
   StaticProblem(System& system, const State& guess)
-      : system_(system), state_(guess), n_(system.body_size()), condensation_(system, 0, 0, 1) {
+      : system_(system),
+        state_(guess),
+        n_(system.body_size()),
+        n_first_(system.first_order_size()),
+        condensation_(system, 0, 0, 1) {
+    if (system.constraint_size() > 0)
+      throw ModelError(
+          fmt::format("static equilibrium: system \"{}\" has velocity constraints, which hold any position: "
+                      "lock coordinates instead",
+                      system.name()));
     const int n_structures = static_cast<int>(guess.q.size()) - n_;
     system_.evaluate(state_);
     n_ports_ = static_cast<int>(system_.ports().size());
@@ -41,7 +50,7 @@ class StaticProblem {
     condensation_.set_bases(VectorXd::Zero(n_structures), 1, guess.qd.tail(n_structures), 0);
   }
 
-  int size() const { return n_ + n_ports_; }
+  int size() const { return n_ + n_first_ + n_ports_; }
   int port_count() const { return n_ports_; }
 
   // The guess, with port forces that hold the structures where the guess has them: bodies and structures then
@@ -51,6 +60,7 @@ class StaticProblem {
     const std::vector<System::PortRecord> ports = system_.ports();
     VectorXd z(size()), wanted(n_ports_);
     z.head(n_) = state_.q.head(n_);
+    z.segment(n_, n_first_) = state_.x;
     Eigen::MatrixXd compliance(n_ports_, n_ports_);
     const auto displacement = [&](int p, const VectorXd& F) {
       const System::PortRecord& port = ports[static_cast<std::size_t>(p)];
@@ -68,15 +78,19 @@ class StaticProblem {
 
   void residual(const VectorXd& z, VectorXd& r) {
     const VectorXd F = z.tail(n_ports_);
+    System::BodyState at = System::body_state(state_);
+    at.q = z.data();
+    at.x = z.data() + n_;
     system_.compute_body_residual(
-        state_.t, z.data(), state_.qd.data(), state_.qdd.data(),
-        [&](int k, const PortShape& shape) { return condensation_.motion(k, shape, F); }, r.data());
-    for (int p = 0; p < n_ports_; ++p) r[n_ + p] = F[p] - system_.ports()[static_cast<std::size_t>(p)].force;
+        at, [&](int k, const PortShape& shape) { return condensation_.motion(k, shape, F); }, r.data());
+    for (int p = 0; p < n_ports_; ++p)
+      r[n_ + n_first_ + p] = F[p] - system_.ports()[static_cast<std::size_t>(p)].force;
   }
 
   State solution(const VectorXd& z) {
     State s = state_;
     s.q.head(n_) = z.head(n_);
+    s.x = z.segment(n_, n_first_);
     condensation_.compute_response(z.tail(n_ports_), s.q.tail(s.q.size() - n_));
     return s;
   }
@@ -85,8 +99,9 @@ class StaticProblem {
   bool ports_moved() const { return condensation_.ports_moved(system_.ports()); }
 
   std::string name(int i) const {
-    return i < n_ ? "coordinate \"" + system_.coordinate_name(i) + "\""
-                  : fmt::format("port force {}", i - n_);
+    if (i < n_) return "coordinate \"" + system_.coordinate_name(i) + "\"";
+    if (i < n_ + n_first_) return "first-order state \"" + system_.equation_name(i) + "\"";
+    return fmt::format("port force {}", i - n_ - n_first_);
   }
 
   std::exception_ptr thrown;  // by the user's program, inside KINSOL
@@ -94,7 +109,7 @@ class StaticProblem {
  private:
   System& system_;
   State state_;
-  int n_, n_ports_ = 0;
+  int n_, n_first_, n_ports_ = 0;
   Condensation condensation_;
 };
 

@@ -127,7 +127,7 @@ class WithBodies : public System {
 TEST(LinearStructure, MovesAsTheSameMassesWrittenAsBodies) {
   WithStructure condensed;
   WithBodies full;
-  const NewmarkOptions options{.step = 5e-4};
+  const StepperOptions options{.step = 5e-4};
   Newmark a(condensed, solve_static_equilibrium(condensed), options);
   Newmark b(full, solve_static_equilibrium(full), options);
   EXPECT_LT((a.state().q - b.state().q).norm(), 1e-12);

@@ -1,4 +1,4 @@
-#include "easydyn/sim/newmark.hpp"
+#include "easydyn/sim/implicit_stepper.hpp"
 
 #include <fmt/format.h>
 
@@ -13,53 +13,52 @@ namespace easydyn {
 using Eigen::VectorXd;
 
 namespace {
-constexpr double beta = 0.25, gamma_ = 0.5;
-
 // Magnitudes below which an unknown counts as zero: 1e-3 m/s^2 or rad/s^2, 1 N.
 constexpr double acceleration_floor = 1e-3, force_floor = 1.0;
 
-State consistent_initial_state(System& system) {
+}  // namespace
+
+State ImplicitStepper::consistent_initial_state(System& system) {
   State state = system.initial_state();
   set_consistent_accelerations(system, state);
   return state;
 }
-}  // namespace
 
-void set_consistent_accelerations(System& system, State& state) {
-  const VectorXd bias = system.compute_bias(state);
-  const int n = system.body_size();
-  state.qdd.setZero();
-  if (n > 0) {
-    Eigen::MatrixXd M(n, n);
-    VectorXd body_bias(n);
-    system.compute_mass_and_bias(state, M, body_bias);
-    const Eigen::FullPivLU<Eigen::MatrixXd> lu(M);
-    if (!lu.isInvertible())
-      throw SolverError(
-          fmt::format("system \"{}\": the mass matrix is singular at t = {} s (rank {} of {}); "
-                      "does every coordinate move a mass?",
-                      system.name(), state.t, lu.rank(), n));
-    state.qdd.head(n) = lu.solve(-bias.head(n));
-  }
-  for (int k = 0; k < static_cast<int>(system.structures().size()); ++k) {
-    const LinearStructure& s = *system.structures()[static_cast<std::size_t>(k)];
-    RightHandSides x = -bias.segment(system.structure_offset(k), s.size());
-    BandedCholesky(s.M(), s.half_bandwidth(), s.name()).solve_in_place(x);
-    state.qdd.segment(system.structure_offset(k), s.size()) = x.col(0);
-  }
-}
+GeneralizedAlpha::GeneralizedAlpha(System& system, State state, const StepperOptions& options, double rho)
+    : ImplicitStepper(
+          "generalised-alpha",
+          [rho] {
+            if (!(rho >= 0 && rho <= 1))
+              throw ModelError(fmt::format("generalised-alpha: spectral_radius = {}, must be 0 to 1", rho));
+            const double m = (2 * rho - 1) / (rho + 1), f = rho / (rho + 1);
+            return Coefficients{m, f, (1 - m + f) * (1 - m + f) / 4, 0.5 - m + f};
+          }(),
+          system, std::move(state), options) {}
 
-Newmark::Newmark(System& system, const NewmarkOptions& options)
-    : Newmark(system, consistent_initial_state(system), options) {}
+Hht::Hht(System& system, State state, const StepperOptions& options, double alpha)
+    : ImplicitStepper(
+          "HHT",
+          [alpha] {
+            if (!(alpha >= -1.0 / 3 && alpha <= 0))
+              throw ModelError(fmt::format("HHT: alpha = {}, must be -1/3 to 0", alpha));
+            return Coefficients{0, -alpha, (1 - alpha) * (1 - alpha) / 4, 0.5 - alpha};
+          }(),
+          system, std::move(state), options) {}
 
-Newmark::Newmark(System& system, State state, const NewmarkOptions& options)
-    : system_(system),
-      state_(std::move(state)),
+ImplicitStepper::ImplicitStepper(const char* method, const Coefficients& coefficients, System& system,
+                                 State state, const StepperOptions& options)
+    : Integrator(system, std::move(state)),
+      method_(method),
+      c_(coefficients),
+      beta_(c_.beta * (1 - c_.alpha_f) / (1 - c_.alpha_m)),
+      gamma_(c_.gamma * (1 - c_.alpha_f) / (1 - c_.alpha_m)),
       options_(options),
       n_bodies_(system.body_size()),
+      n_first_(system.first_order_size()),
+      n_constraints_(system.constraint_size()),
       h_(options.step) {
-  const auto require_positive = [](double value, const char* name) {
-    if (!(value > 0)) throw ModelError(fmt::format("Newmark: {} = {}, must be > 0", name, value));
+  const auto require_positive = [&](double value, const char* name) {
+    if (!(value > 0)) throw ModelError(fmt::format("{}: {} = {}, must be > 0", method_, name, value));
   };
   require_positive(options.step, "step [s]");
   require_positive(options.tolerance, "tolerance");
@@ -69,40 +68,49 @@ Newmark::Newmark(System& system, State state, const NewmarkOptions& options)
 
   // The first evaluation tells how many ports there are, and their forces.
   system_.evaluate(state_);
+  a_ = state_.qdd;
+  w_ = state_.xd;
   port_forces_.resize(static_cast<int>(system_.ports().size()));
   for (int p = 0; p < port_forces_.size(); ++p)
     port_forces_[p] = system_.ports()[static_cast<std::size_t>(p)].force;
-  floors_.resize(n_bodies_ + port_forces_.size());
-  floors_.head(n_bodies_).setConstant(acceleration_floor);
-  floors_.tail(port_forces_.size()).setConstant(force_floor);
-  scale_ = floors_;
-  scale_.head(n_bodies_) = scale_.head(n_bodies_).cwiseMax(state_.qdd.head(n_bodies_).cwiseAbs());
-  scale_.tail(port_forces_.size()) = scale_.tail(port_forces_.size()).cwiseMax(port_forces_.cwiseAbs());
+  floors_.resize(system_.equation_count() + port_forces_.size());
+  floors_.setConstant(force_floor);
+  floors_.head(n_bodies_ + n_first_).setConstant(acceleration_floor);
+  scale_ = floors_.cwiseMax(initial_unknowns().cwiseAbs());
 }
 
-Newmark::~Newmark() = default;
+ImplicitStepper::~ImplicitStepper() = default;
 
-void Newmark::prepare(double h) {
+VectorXd ImplicitStepper::initial_unknowns() const {
+  VectorXd z(system_.equation_count() + port_forces_.size());
+  z << state_.qdd.head(n_bodies_), state_.xd, state_.lambda, port_forces_;
+  return z;
+}
+
+void ImplicitStepper::prepare(double h) {
   if (h == prepared_step_) return;
-  condensation_ = std::make_unique<Condensation>(system_, 1.0, gamma_ * h, beta * h * h);
+  condensation_ = std::make_unique<Condensation>(system_, 1.0, gamma_ * h, beta_ * h * h);
   statistics_.factorisations += static_cast<long>(system_.structures().size());
   jacobian_known_ = false;
   prepared_step_ = h;
 }
 
-void Newmark::set_unknowns(const VectorXd& z, State& next) {
+void ImplicitStepper::set_unknowns(const VectorXd& z, State& next) {
   const double h = prepared_step_;
   const int n = n_bodies_;
   next.qdd.head(n) = z.head(n);
-  next.q.head(n) = q_star_.head(n) + beta * h * h * z.head(n);
+  next.q.head(n) = q_star_.head(n) + beta_ * h * h * z.head(n);
   next.qd.head(n) = qd_star_.head(n) + gamma_ * h * z.head(n);
+  next.xd = z.segment(n, n_first_);
+  next.x = x_star_ + gamma_ * h * next.xd;
+  next.lambda = z.segment(n + n_first_, n_constraints_);
 }
 
-void Newmark::evaluate(const VectorXd& z, State& next, VectorXd& residual) {
+void ImplicitStepper::evaluate(const VectorXd& z, State& next, VectorXd& residual) {
   const VectorXd forces = z.tail(port_forces_.size());
   set_unknowns(z, next);
   system_.compute_body_residual(
-      next.t, next.q.data(), next.qd.data(), next.qdd.data(),
+      System::body_state(next),
       [&](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces); },
       residual.data());
   ++statistics_.evaluations;
@@ -112,10 +120,11 @@ void Newmark::evaluate(const VectorXd& z, State& next, VectorXd& residual) {
                     "same order at each evaluation",
                     system_.name(), system_.ports().size(), forces.size()));
   for (int p = 0; p < forces.size(); ++p)
-    residual[n_bodies_ + p] = forces[p] - system_.ports()[static_cast<std::size_t>(p)].force;
+    residual[residual.size() - forces.size() + p] =
+        forces[p] - system_.ports()[static_cast<std::size_t>(p)].force;
 }
 
-void Newmark::compute_jacobian(const VectorXd& z, State& next, const VectorXd& residual) {
+void ImplicitStepper::compute_jacobian(const VectorXd& z, State& next, const VectorXd& residual) {
   const int n = static_cast<int>(z.size());
   Eigen::MatrixXd J(n, n);
   VectorXd shifted = z, r(n);
@@ -131,20 +140,22 @@ void Newmark::compute_jacobian(const VectorXd& z, State& next, const VectorXd& r
   ++statistics_.jacobians;
 }
 
-bool Newmark::try_step(double h, State& next) {
+bool ImplicitStepper::try_step(double h, State& next) {
   prepare(h);
   const int n = n_bodies_, n_ports = static_cast<int>(port_forces_.size());
+  const double f = c_.alpha_f, m = c_.alpha_m;
   const int n_structures = static_cast<int>(state_.q.size()) - n;
 
   // What is known of the new state before its accelerations.
+  const VectorXd carried = (f * state_.qdd - m * a_) / (1 - m);  // the part of a_1 that is known
+  q_star_ = state_.q + h * state_.qd + h * h * ((0.5 - c_.beta) * a_ + c_.beta * carried);
+  qd_star_ = state_.qd + h * ((1 - c_.gamma) * a_ + c_.gamma * carried);
+  x_star_ = state_.x + h * ((1 - c_.gamma) * w_ + c_.gamma / (1 - m) * (f * state_.xd - m * w_));
+  next = state_;
   next.t = state_.t + h;
-  q_star_ = state_.q + h * state_.qd + (0.5 - beta) * h * h * state_.qdd;
-  qd_star_ = state_.qd + (1 - gamma_) * h * state_.qdd;
-  next.q = q_star_ + beta * h * h * state_.qdd;
+  next.q = q_star_ + beta_ * h * h * state_.qdd;
   next.qd = qd_star_ + gamma_ * h * state_.qdd;
-  next.qdd = state_.qdd;
-  VectorXd z(n + n_ports), residual(n + n_ports);
-  z << state_.qdd.head(n), port_forces_;
+  VectorXd z = initial_unknowns(), residual(z.size());
 
   VectorXd b(n_structures);
   if (n_structures > 0) {
@@ -157,7 +168,7 @@ bool Newmark::try_step(double h, State& next) {
       at += s->size();
     }
     condensation_->solve(b, system_.ports());
-    condensation_->set_bases(q_star_.tail(n_structures), beta * h * h, qd_star_.tail(n_structures),
+    condensation_->set_bases(q_star_.tail(n_structures), beta_ * h * h, qd_star_.tail(n_structures),
                              gamma_ * h);
   }
 
@@ -191,7 +202,7 @@ bool Newmark::try_step(double h, State& next) {
         y_.resize(n_structures);
         condensation_->compute_response(port_forces_, y_);
         next.qdd.tail(n_structures) = y_;
-        next.q.tail(n_structures) = q_star_.tail(n_structures) + beta * h * h * y_;
+        next.q.tail(n_structures) = q_star_.tail(n_structures) + beta_ * h * h * y_;
         next.qd.tail(n_structures) = qd_star_.tail(n_structures) + gamma_ * h * y_;
       }
       return true;
@@ -202,13 +213,17 @@ bool Newmark::try_step(double h, State& next) {
   return false;
 }
 
-double Newmark::local_error(const State& next, double h) const {
-  if (next.qdd.size() == 0) return 0;
-  return std::abs(beta - 1.0 / 6) * h * h * (next.qdd - state_.qdd).lpNorm<Eigen::Infinity>() /
-         options_.tolerance;
+double ImplicitStepper::local_error(const State& next, double h) const {
+  const double factor = std::abs(c_.beta - 1.0 / 6 + 0.5 * (c_.alpha_m - c_.alpha_f)) * h * h;
+  double error = 0;
+  if (next.qdd.size() > 0) error = factor * (next.qdd - state_.qdd).lpNorm<Eigen::Infinity>();
+  // A first-order state errs like a rate, one order of h less.
+  if (next.xd.size() > 0 && last_change_.size() > 0)
+    error = std::max(error, h / 12 * (next.xd - state_.xd - h * last_change_).lpNorm<Eigen::Infinity>());
+  return error / options_.tolerance;
 }
 
-void Newmark::step() {
+void ImplicitStepper::step() {
   State next;
   for (;;) {
     const VectorXd forces_before = port_forces_;
@@ -217,14 +232,14 @@ void Newmark::step() {
       if (!converged)
         throw SolverError(
             std::isfinite(last_residual_)
-                ? fmt::format("Newmark: no convergence at t = {} s with step {} s after {} iterations, "
+                ? fmt::format("{}: no convergence at t = {} s with step {} s after {} iterations, "
                               "residual {:.3g}; "
                               "try a smaller step",
-                              state_.t, h_, options_.max_iterations, last_residual_)
+                              method_, state_.t, h_, options_.max_iterations, last_residual_)
                 : fmt::format(
-                      "Newmark: the residual is not a finite number at t = {} s with step {} s; does a force "
+                      "{}: the residual is not a finite number at t = {} s with step {} s; does a force "
                       "divide by zero or take a root of a negative number?",
-                      state_.t, h_));
+                      method_, state_.t, h_));
       break;
     }
 
@@ -242,20 +257,24 @@ void Newmark::step() {
     h_ *= std::min(factor, 0.5);
     if (h_ < options_.min_step)
       throw SolverError(
-          fmt::format("Newmark: the step fell below {} s at t = {} s (local error {:.3g} of the "
+          fmt::format("{}: the step fell below {} s at t = {} s (local error {:.3g} of the "
                       "tolerance, residual {:.3g}); is there an impact, or is the tolerance too tight?",
-                      options_.min_step, state_.t, error, last_residual_));
+                      method_, options_.min_step, state_.t, error, last_residual_));
   }
   accept(next);
 }
 
-void Newmark::accept(State& next) {
+void ImplicitStepper::accept(State& next) {
+  const double f = c_.alpha_f, m = c_.alpha_m, h = next.t - state_.t;
+  a_ = ((1 - f) * next.qdd + f * state_.qdd - m * a_) / (1 - m);
+  w_ = ((1 - f) * next.xd + f * state_.xd - m * w_) / (1 - m);
+  last_change_ = (next.xd - state_.xd) / h;
   state_ = std::move(next);
   scale_ = next_scale_;
   ++statistics_.steps;
 }
 
-void Newmark::advance(double t_end, const std::function<void(const State&)>& after_each_step) {
+void ImplicitStepper::advance(double t_end, const std::function<void(const State&)>& after_each_step) {
   while (t_end - state_.t > 1e-6 * h_) {
     const double regular = h_;
     // A rest within a millionth of a step is the same step.
