@@ -7,6 +7,7 @@
 #include "easydyn/math/units.hpp"
 #include "easydyn/mbs/system.hpp"
 #include "easydyn/sim/accelerations.hpp"
+#include "easydyn/sim/adaptive_integrator.hpp"
 #include "easydyn/sim/implicit_stepper.hpp"
 #include "easydyn/sim/integrator.hpp"
 #include "easydyn/sim/linearization.hpp"
