@@ -70,6 +70,20 @@ const Function functions[] = {
     Function{"exp", [](const Expr& a, const Expr& b, const Expr& t) { return exp(a * b - t); }},
     Function{"log", [](const Expr& a, const Expr& b, const Expr& t) { return log(a + b + t); }},
     Function{"pow", [](const Expr& a, const Expr& b, const Expr& t) { return pow(a + b + t, 2.5); }},
+    Function{"pow_of_expr", [](const Expr& a, const Expr& b, const Expr& t) { return pow(a + 1, b + t); }},
+    Function{"asinh", [](const Expr& a, const Expr& b, const Expr& t) { return asinh(a * b + t); }},
+    Function{"acosh", [](const Expr& a, const Expr& b, const Expr& t) { return acosh(2 + a * b + t); }},
+    Function{"atanh", [](const Expr& a, const Expr& b, const Expr& t) { return atanh(a * b + t); }},
+    Function{"cbrt", [](const Expr& a, const Expr& b, const Expr& t) { return cbrt(-a * b - t - 1); }},
+    Function{"log10", [](const Expr& a, const Expr& b, const Expr& t) { return log10(a + b + t); }},
+    Function{"abs", [](const Expr& a, const Expr& b, const Expr& t) { return abs(-a - b * t); }},
+    Function{"hypot", [](const Expr& a, const Expr& b, const Expr& t) { return hypot(a, b + t); }},
+    Function{"function_of_three",
+             [](const Expr& a, const Expr& b, const Expr&) {
+               return Expr::apply(
+                   a * b, [](double x) { return std::sin(3 * x); }, [](double x) { return 3 * std::cos(3 * x); },
+                   [](double x) { return -9 * std::sin(3 * x); });
+             }},
     Function{"hyperbolic",
              [](const Expr& a, const Expr& b, const Expr& t) { return sinh(a) * cosh(b) + tanh(t + a); }},
     Function{"user_function", [](const Expr& a, const Expr&, const Expr&) {
