@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace easydyn {
 
@@ -10,8 +11,9 @@ struct State {
   /// Coordinates, rates and accelerations: first the free coordinates of the bodies in the order of their
   /// declaration, then those of each linear structure.
   Eigen::VectorXd q, qd, qdd;
-  Eigen::VectorXd x, xd;   ///< first-order states and their rates
-  Eigen::VectorXd lambda;  ///< forces of the velocity constraints
+  Eigen::VectorXd x, xd;                ///< first-order states and their rates
+  Eigen::VectorXd lambda;               ///< forces of the velocity constraints
+  std::vector<Eigen::Matrix3d> charts;  ///< reference orientations of free motions (free_motion.hpp)
 };
 
 /// Energies [J] and powers [W] at a state. Along a motion

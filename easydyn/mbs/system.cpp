@@ -214,6 +214,7 @@ State System::initial_state() const {
   state.x = state.xd = VectorXd::Zero(first_order_size());
   for (int i = 0; i < first_order_size(); ++i) state.x[i] = first_order_[static_cast<std::size_t>(i)].value;
   state.lambda = VectorXd::Zero(constraint_size());
+  state.charts = initial_charts_;
   return state;
 }
 
@@ -224,6 +225,7 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
     ~Reset() {
       s.q_ = s.qd_ = s.x_ = nullptr;
       s.port_motion_ = nullptr;
+      s.chart_pointer_ = nullptr;
       s.in_forces_ = false;
     }
   } reset{*this};
@@ -233,6 +235,7 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
   qd_ = state.qd ? state.qd : &none;
   x_ = state.x ? state.x : &none;
   port_motion_ = &motion;
+  chart_pointer_ = state.charts ? state.charts : initial_charts_.data();
   if (slot_count_ > free_count_) fill_held(state);
 
   // Positions: the user's program builds the tree of motions.
@@ -344,6 +347,9 @@ void System::check_size(const State& state) const {
   if (state.lambda.size() != constraint_size())
     throw ModelError(fmt::format("system \"{}\" has {} velocity constraints, the state has lambda {}", name_,
                                  constraint_size(), state.lambda.size()));
+  if (state.charts.size() != initial_charts_.size())
+    throw ModelError(fmt::format("system \"{}\" has {} free motions, the state has {} charts", name_,
+                                 initial_charts_.size(), state.charts.size()));
 }
 
 void System::compute_residual(const State& state, Eigen::Ref<VectorXd> r) {

@@ -10,6 +10,7 @@
 #include "easydyn/mbs/body.hpp"
 #include "easydyn/mbs/coordinate.hpp"
 #include "easydyn/mbs/frame.hpp"
+#include "easydyn/mbs/free_motion.hpp"
 #include "easydyn/mbs/linear_structure.hpp"
 #include "easydyn/mbs/loop.hpp"
 #include "easydyn/mbs/motion_tree.hpp"
@@ -52,6 +53,9 @@ class System {
   FirstOrderState first_order_state(std::string name, double initial = 0);
   Input input(std::string name, double value = 0);
   Reaction reaction(std::string name);
+  /// Declares the motion of a free body with its origin and orientation at the start.
+  FreeMotion free_motion(const std::string& name, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
+                         const Eigen::Matrix3d& orientation = Eigen::Matrix3d::Identity());
   /// Declares a closed loop with N unknowns and a guess of them.
   template <int N>
   Loop<N> loop(std::string name, const std::array<double, N>& guess) {
@@ -123,13 +127,19 @@ class System {
     double t;
     const double *q, *qd, *qdd;
     const double *x = nullptr, *xd = nullptr, *lambda = nullptr;
+    const Eigen::Matrix3d* charts = nullptr;  // null: those of the start
   };
   static BodyState body_state(const State& s) {
-    return {s.t, s.q.data(), s.qd.data(), s.qdd.data(), s.x.data(), s.xd.data(), s.lambda.data()};
+    return {s.t,        s.q.data(),  s.qd.data(),     s.qdd.data(),
+            s.x.data(), s.xd.data(), s.lambda.data(), s.charts.data()};
   }
   /// The equation_count() equations of everything but structures, with port motions given by `motion`:
   /// residual r - A^T lambda of the bodies' coordinates, x. - f, velocities phi of the constraints.
   void compute_body_residual(const BodyState& state, const PortMotionFunction& motion, double* r);
+  /// For integrators, after a step: gives free motions that have turned far a new chart and converts the state to
+  /// it. @param pseudo_accelerations  converted as qdd is; may be null
+  /// @returns whether a chart has changed
+  bool update_charts(State& state, Eigen::VectorXd* pseudo_accelerations = nullptr) const;
   /// Ports touched in the last evaluation, in order.
   const std::vector<PortRecord>& ports() const { return ports_; }
 
@@ -151,6 +161,7 @@ class System {
  private:
   friend class Coordinate;
   friend class FirstOrderState;
+  friend class FreeMotion;
   friend class Input;
   friend class Reaction;
   friend class Port;
@@ -189,6 +200,9 @@ class System {
   std::vector<NamedValue> first_order_, inputs_;
   std::deque<VelocityConstraint> constraints_;
   std::vector<ReactionData> reactions_;
+  std::vector<FreeMotion> free_motions_;
+  std::vector<Eigen::Matrix3d> initial_charts_;
+  const Eigen::Matrix3d* chart_pointer_ = nullptr;  // during an evaluation
   bool cuts_open_ = false;
   std::vector<double> rates_;                             // of the first-order states
   std::vector<double> q_all_, qd_all_, qdd_all_, r_all_;  // by slot, where there are held ones

@@ -99,6 +99,7 @@ struct AdaptiveIntegrator::Backend {
   virtual int interpolate(double t, N_Vector into) = 0;
   virtual std::string flag_name(int flag) const = 0;
   virtual double last_step() const = 0;
+  virtual void restart(const State& from) = 0;  // y has been set
 
   sundials::Context context;
   System& system;
@@ -156,6 +157,12 @@ bool AdaptiveIntegrator::take_step(double t_end) {
   ++b.steps;
   b.unpack(t, b.y, state_);
   b.accelerations.solve(state_);
+  if (system_.update_charts(state_)) {
+    b.scratch.charts = state_.charts;
+    b.pack(state_, b.y);
+    b.restart(state_);
+    b.step_start = t;
+  }
 
   bool stops = false;
   if (b.is_root(flag)) {
@@ -245,6 +252,7 @@ struct AdaptiveIntegrator::RungeKuttaBackend : Backend {
     ERKStepSetNoInactiveRootWarn(memory);
   }
   int interpolate(double t, N_Vector into) override { return ERKStepGetDky(memory, t, 0, into); }
+  void restart(const State& from) override { ERKStepReset(memory, from.t, y); }
   std::string flag_name(int flag) const override {
     return take_name([](long f) { return ERKStepGetReturnFlagName(f); }, flag);
   }
@@ -304,6 +312,7 @@ struct AdaptiveIntegrator::CvodeBackend : Backend {
     CVodeSetNoInactiveRootWarn(memory);
   }
   int interpolate(double t, N_Vector into) override { return CVodeGetDky(memory, t, 0, into); }
+  void restart(const State& from) override { CVodeReInit(memory, from.t, y); }
   std::string flag_name(int flag) const override {
     return take_name([](long f) { return CVodeGetReturnFlagName(f); }, flag);
   }
@@ -400,6 +409,11 @@ struct AdaptiveIntegrator::IdaBackend : Backend {
     IDASetNoInactiveRootWarn(memory);
   }
   int interpolate(double t, N_Vector into) override { return IDAGetDky(memory, t, 0, into); }
+  void restart(const State& from) override {
+    N_VConst(0, rate);
+    view(rate).head(2 * n + nx) << from.qd, from.qdd, from.xd;
+    IDAReInit(memory, from.t, y, rate);
+  }
   std::string flag_name(int flag) const override {
     return take_name([](long f) { return IDAGetReturnFlagName(f); }, flag);
   }

@@ -47,7 +47,7 @@ class AdaptiveIntegrator : public Integrator {
   /// Ends at t_end exactly, or at an event that stops.
   void advance(double t_end, const Watcher& after_each_step = {}) override;
   /// The motion at a time within the last step (dense output; accelerations from the equations of motion).
-  /// @throws ModelError if t lies outside the last step
+  /// @throws ModelError if t lies outside the last step, or a free motion has changed its chart there
   State interpolate(double t);
 
   struct Statistics {

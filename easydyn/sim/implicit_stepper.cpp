@@ -270,6 +270,7 @@ void ImplicitStepper::accept(State& next) {
   w_ = ((1 - f) * next.xd + f * state_.xd - m * w_) / (1 - m);
   last_change_ = (next.xd - state_.xd) / h;
   state_ = std::move(next);
+  if (system_.update_charts(state_, &a_)) jacobian_known_ = false;
   scale_ = next_scale_;
   ++statistics_.steps;
 }
