@@ -13,4 +13,5 @@
 #include "easydyn/sim/linearization.hpp"
 #include "easydyn/sim/modes.hpp"
 #include "easydyn/sim/recorder.hpp"
+#include "easydyn/sim/state_space.hpp"
 #include "easydyn/sim/static_equilibrium.hpp"

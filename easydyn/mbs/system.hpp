@@ -82,6 +82,8 @@ class System {
   const std::deque<Body>& bodies() const { return bodies_; }
   const std::deque<VelocityConstraint>& velocity_constraints() const { return constraints_; }
   const std::string& input_name(int i) const { return inputs_[static_cast<std::size_t>(i)].name; }
+  double input_value(int i) const { return inputs_[static_cast<std::size_t>(i)].value; }
+  void set_input(int i, double value) { inputs_[static_cast<std::size_t>(i)].value = value; }
   int input_size() const { return static_cast<int>(inputs_.size()); }
   const std::vector<std::unique_ptr<LinearStructure>>& structures() const { return structures_; }
   int structure_offset(int k) const;  ///< index of the first coordinate of structure k in q

@@ -11,7 +11,7 @@ struct Linearization {
   Eigen::MatrixXd M, C, K;
 };
 
-/// M exactly; C = dr/dqd and K = dr/dq by fourth-order central differences of the residual.
+/// Of the coordinates alone: first-order states and inputs are constant here (state_space.hpp has them). M exactly; C = dr/dqd and K = dr/dq by fourth-order central differences of the residual.
 /// @param difference  step in q and qd [m, rad, m/s, rad/s]
 Linearization linearize(System& system, const State& state, double difference = 1e-4);
 

@@ -1,0 +1,69 @@
+#include "easydyn/sim/state_space.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <numbers>
+
+#include "easydyn/error.hpp"
+#include "easydyn/sim/accelerations.hpp"
+
+namespace easydyn {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+StateSpace linearize_state_space(System& system, const State& state, double difference) {
+  if (!(difference > 0))
+    throw ModelError(fmt::format("linearization: difference = {}, must be > 0", difference));
+  const int n = system.size(), nx = system.first_order_size(), nu = system.input_size();
+  AccelerationSolver solver(system);
+  State shifted = state;
+  const auto rates = [&]() -> VectorXd {
+    solver.solve(shifted);
+    VectorXd y(2 * n + nx);
+    y << shifted.qd, shifted.qdd, shifted.xd;
+    return y;
+  };
+  // (f(-2d) - 8 f(-d) + 8 f(d) - f(2d)) / 12 d
+  const auto derivative = [&](auto set) -> VectorXd {
+    const auto at = [&](double d) {
+      set(d);
+      return rates();
+    };
+    const VectorXd sum = at(-2 * difference) - 8 * at(-difference) + 8 * at(difference) - at(2 * difference);
+    set(0.0);
+    return sum / (12 * difference);
+  };
+  StateSpace space{MatrixXd(2 * n + nx, 2 * n + nx), MatrixXd(2 * n + nx, nu), n};
+  for (int i = 0; i < n; ++i) {
+    space.A.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; });
+    space.A.col(n + i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; });
+  }
+  for (int i = 0; i < nx; ++i)
+    space.A.col(2 * n + i) = derivative([&](double d) { shifted.x[i] = state.x[i] + d; });
+  for (int i = 0; i < nu; ++i) {
+    const double value = system.input_value(i);
+    space.B.col(i) = derivative([&](double d) { system.set_input(i, value + d); });
+    system.set_input(i, value);
+  }
+  return space;
+}
+
+std::vector<MatrixXcd> compute_frequency_response(const StateSpace& space, const VectorXd& frequencies) {
+  std::vector<MatrixXcd> responses;
+  const Eigen::Index size = space.A.rows();
+  for (const double f : frequencies) {
+    if (!(f >= 0)) throw ModelError(fmt::format("frequency response: frequency = {} Hz, must be >= 0", f));
+    const std::complex<double> iw(0, 2 * std::numbers::pi * f);
+    const MatrixXcd G = iw * MatrixXcd::Identity(size, size) - space.A;
+    const Eigen::FullPivLU<MatrixXcd> lu(G);
+    if (!lu.isInvertible())
+      throw SolverError(fmt::format("frequency response: {} Hz is the frequency of an undamped mode", f));
+    responses.push_back(lu.solve(space.B.cast<std::complex<double>>()));
+  }
+  return responses;
+}
+
+}  // namespace easydyn
