@@ -29,6 +29,19 @@ Eigen::Map<VectorXd> view(N_Vector v) {
 
 void ignore_message(int, const char*, const char*, char*, void*) {}  // flags are turned into SolverError
 
+AdaptiveOptions checked(const AdaptiveOptions& options) {
+  if (!(options.relative_tolerance >= 1e-15 && options.relative_tolerance < 1))
+    throw ModelError(
+        fmt::format("integrator: relative_tolerance = {}, must be 1e-15 to 1", options.relative_tolerance));
+  if (!(options.absolute_tolerance > 0))
+    throw ModelError(
+        fmt::format("integrator: absolute_tolerance = {}, must be > 0", options.absolute_tolerance));
+  if (!(options.first_step >= 0) || !(options.max_step >= 0))
+    throw ModelError(fmt::format("integrator: first_step = {} s, max_step = {} s, must be >= 0",
+                                 options.first_step, options.max_step));
+  return options;
+}
+
 constexpr long many_steps = 1L << 40;
 
 }  // namespace
@@ -37,22 +50,13 @@ constexpr long many_steps = 1L << 40;
 struct AdaptiveIntegrator::Backend {
   Backend(System& system_, const State& start, const AdaptiveOptions& options_, bool has_lambda)
       : system(system_),
-        options(options_),
+        options(checked(options_)),
         accelerations(system_),
         scratch(start),
         n(system_.size()),
         nx(system_.first_order_size()),
         nc(has_lambda ? system_.constraint_size() : 0),
         y(N_VNew_Serial(2 * n + nx + nc, context)) {
-    if (!(options.relative_tolerance >= 1e-15 && options.relative_tolerance < 1))
-      throw ModelError(
-          fmt::format("integrator: relative_tolerance = {}, must be 1e-15 to 1", options.relative_tolerance));
-    if (!(options.absolute_tolerance > 0))
-      throw ModelError(
-          fmt::format("integrator: absolute_tolerance = {}, must be > 0", options.absolute_tolerance));
-    if (!(options.first_step >= 0) || !(options.max_step >= 0))
-      throw ModelError(fmt::format("integrator: first_step = {} s, max_step = {} s, must be >= 0",
-                                   options.first_step, options.max_step));
     pack(start, y);
   }
   virtual ~Backend() { N_VDestroy(y); }
