@@ -17,7 +17,7 @@ namespace easydyn {
 /// so that f.. = gradient . qdd + bias. Coordinates, the time and numbers convert to Expr; + - * / and the
 /// functions below apply. A function of the user's enters by its value and two derivatives: `apply`.
 ///
-/// Outside the domain of a function (the root of a negative number) the result is not a number, as in <cmath>.
+/// Outside the domain of a function (the root of a negative number) the result is not a number, as in the standard library.
 class Expr {
  public:
   Expr(double constant = 0) : value_(constant) {}  // NOLINT: numbers are expressions
