@@ -68,14 +68,11 @@ void FirstOrderState::set_rate(double f) const {
 }
 
 double Input::value() const {
-  return system_->inputs_[static_cast<std::size_t>(index_)].value;
+  return system_->input_value(index_);
 }
 
 void Input::set(double value) const {
-  System::NamedValue& input = system_->inputs_[static_cast<std::size_t>(index_)];
-  if (!std::isfinite(value))
-    throw ModelError(fmt::format("input \"{}\" = {}, must be finite", input.name, value));
-  input.value = value;
+  system_->set_input(index_, value);
 }
 
 Frame Reaction::cut(const Frame& frame) const {
@@ -124,7 +121,6 @@ void System::assign_slots() {
     slot_count_ += 6;
   }
   const std::size_t n = slot_count_ > free_count_ ? static_cast<std::size_t>(slot_count_) : 0;
-  q_all_.resize(n);
   qd_all_.resize(n);
   qdd_all_.resize(n);
   r_all_.resize(n);
@@ -147,6 +143,13 @@ Input System::input(std::string name, double value) {
   const Input input(*this, input_size() - 1);
   input.set(value);
   return input;
+}
+
+void System::set_input(int i, double value) {
+  NamedValue& input = inputs_[static_cast<std::size_t>(i)];
+  if (!std::isfinite(value))
+    throw ModelError(fmt::format("input \"{}\" = {}, must be finite", input.name, value));
+  input.value = value;
 }
 
 Reaction System::reaction(std::string name) {

@@ -83,7 +83,7 @@ class System {
   const std::deque<VelocityConstraint>& velocity_constraints() const { return constraints_; }
   const std::string& input_name(int i) const { return inputs_[static_cast<std::size_t>(i)].name; }
   double input_value(int i) const { return inputs_[static_cast<std::size_t>(i)].value; }
-  void set_input(int i, double value) { inputs_[static_cast<std::size_t>(i)].value = value; }
+  void set_input(int i, double value);  ///< @throws ModelError if the value is not finite
   int input_size() const { return static_cast<int>(inputs_.size()); }
   const std::vector<std::unique_ptr<LinearStructure>>& structures() const { return structures_; }
   int structure_offset(int k) const;  ///< index of the first coordinate of structure k in q
@@ -164,7 +164,6 @@ class System {
   friend class Coordinate;
   friend class FirstOrderState;
   friend class FreeMotion;
-  friend class Input;
   friend class Reaction;
   friend class Port;
   struct CoordinateData {
@@ -206,8 +205,8 @@ class System {
   std::vector<Eigen::Matrix3d> initial_charts_;
   const Eigen::Matrix3d* chart_pointer_ = nullptr;  // during an evaluation
   bool cuts_open_ = false;
-  std::vector<double> rates_;                             // of the first-order states
-  std::vector<double> q_all_, qd_all_, qdd_all_, r_all_;  // by slot, where there are held ones
+  std::vector<double> rates_;                     // of the first-order states
+  std::vector<double> qd_all_, qdd_all_, r_all_;  // by slot, where there are held ones
   std::deque<Body> bodies_;
   std::vector<std::unique_ptr<LinearStructure>> structures_;
   std::vector<std::shared_ptr<LoopClosure>> loops_;

@@ -26,8 +26,9 @@ struct EventRecord {
 
 struct AdaptiveOptions {
   /// Bounds of the local error of each entry y of q, qd and x per step: |e| <= relative |y| + absolute (root mean
-  /// square over the entries). The error at the end is larger by what the motion makes of small differences: for a
-  /// pendulum some tens of times, for chaotic motion without bound.
+  /// square over the entries). The error at the end is larger by what the motion makes of small differences. Measured
+  /// after one wide swing of a pendulum, in relative tolerances: RungeKutta 6 to 15, Adams 30 to 330, BDF 60 to 730,
+  /// Ida 50 to 160; in chaotic motion it has no bound.
   double relative_tolerance = 1e-6, absolute_tolerance = 1e-8;
   double first_step = 0;  ///< [s]; 0: chosen
   double max_step = 0;    ///< [s]; 0: no limit

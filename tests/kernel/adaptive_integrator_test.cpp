@@ -38,11 +38,11 @@ using Make = std::function<std::unique_ptr<AdaptiveIntegrator>(System&, const Ad
 struct Method {
   const char* name;
   Make make;
-  double factor;  ///< allowed error after a period / relative tolerance; measured: about a third of it
+  double factor;  ///< allowed error after a period / relative tolerance; measured: adaptive_integrator.hpp
 };
 const Method methods[] = {
     {"runge_kutta", [](System& s, const AdaptiveOptions& o) { return std::make_unique<RungeKutta>(s, o); },
-     100},
+     50},
     {"adams",
      [](System& s, const AdaptiveOptions& o) { return std::make_unique<Cvode>(s, o, Cvode::Method::adams); },
      1000},
