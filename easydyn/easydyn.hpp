@@ -2,7 +2,15 @@
 
 /// The multibody kernel in one include.
 #include "easydyn/error.hpp"
+#include "easydyn/forces/actuator.hpp"
+#include "easydyn/forces/bushing.hpp"
+#include "easydyn/forces/external_force.hpp"
+#include "easydyn/forces/friction.hpp"
+#include "easydyn/forces/nonlinear_spring_damper.hpp"
+#include "easydyn/forces/plane_contact.hpp"
 #include "easydyn/forces/spring_damper.hpp"
+#include "easydyn/forces/torsional_spring_damper.hpp"
+#include "easydyn/forces/tyre.hpp"
 #include "easydyn/forces/vertical_spring_damper.hpp"
 #include "easydyn/math/units.hpp"
 #include "easydyn/mbs/system.hpp"
