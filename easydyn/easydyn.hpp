@@ -1,6 +1,9 @@
 #pragma once
 
 /// The multibody kernel in one include.
+#include "easydyn/control/dc_motor.hpp"
+#include "easydyn/control/hydraulic_jack.hpp"
+#include "easydyn/control/pid.hpp"
 #include "easydyn/error.hpp"
 #include "easydyn/forces/actuator.hpp"
 #include "easydyn/forces/bushing.hpp"

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 void Actuator::apply_force(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,
                            const Vector3d& p_B, double F) {
-  require_finite("actuator \"" + name_ + "\"", "force", F, "N");
+  require_finite(object_, "force", F, "N");
   const LineOfAction line("actuator", name_, frame_A, p_A, frame_B, p_B);
   effort_ = F;
   rate_ = line.rate;
@@ -19,9 +19,9 @@ void Actuator::apply_force(const Frame& frame_A, const Vector3d& p_A, const Fram
 }
 
 void Actuator::apply_moment(const Frame& frame_A, const Frame& frame_B, const Vector3d& axis_A, double M) {
-  require_finite("actuator \"" + name_ + "\"", "moment", M, "N m");
+  require_finite(object_, "moment", M, "N m");
   const double length = axis_A.norm();
-  require(length > 0, "actuator \"" + name_ + "\"", "length of the axis", length, "", "> 0");
+  require(length > 0, object_, "length of the axis", length, "", "> 0");
   const Vector3d axis = frame_A.direction(axis_A / length);
   effort_ = M;
   rate_ = axis.dot(frame_B.angular_velocity() - frame_A.angular_velocity());

@@ -11,7 +11,7 @@ namespace easydyn {
 /// asks for. What it brings in is supplied power: F l. or M w, negative where it brakes.
 class Actuator {
  public:
-  explicit Actuator(std::string name) : name_(std::move(name)) {}
+  explicit Actuator(std::string name) : name_(std::move(name)), object_("actuator \"" + name_ + "\"") {}
 
   /// Pushes the points A and B apart with the force F [N] (negative: pulls), in System::forces().
   /// @throws ModelError if A and B coincide or F is not finite
@@ -26,7 +26,7 @@ class Actuator {
   const std::string& name() const { return name_; }
 
  private:
-  std::string name_;
+  std::string name_, object_;  // object_: as errors call it
   double effort_ = 0, rate_ = 0;
 };
 

@@ -20,19 +20,20 @@ void FrictionLaw::check(const std::string& object) const {
   require_positive(object, "Stribeck speed", stribeck_speed, "m/s");
 }
 
-Friction::Friction(std::string name, const FrictionLaw& law) : name_(std::move(name)), law_(law) {
-  law.check("friction \"" + name_ + "\"");
+Friction::Friction(std::string name, const FrictionLaw& law)
+    : name_(std::move(name)), object_("friction \"" + name_ + "\""), law_(law) {
+  law.check(object_);
 }
 
 Vector3d Friction::axis_0(const Frame& frame_A, const Vector3d& axis_A) const {
   const double length = axis_A.norm();
-  require(length > 0, "friction \"" + name_ + "\"", "length of the axis", length, "", "> 0");
+  require(length > 0, object_, "length of the axis", length, "", "> 0");
   return frame_A.direction(axis_A / length);
 }
 
 void Friction::apply_sliding(const Frame& frame_A, const Frame& frame_B, const Vector3d& axis_A,
                              double normal_force) {
-  require_not_negative("friction \"" + name_ + "\"", "normal force", normal_force, "N");
+  require_not_negative(object_, "normal force", normal_force, "N");
   const Vector3d axis = axis_0(frame_A, axis_A), p = frame_B.origin();
   const double v = axis.dot(frame_B.velocity_at(p) - frame_A.velocity_at(p));
   force_ = -law_.coefficient(v) * normal_force;
@@ -43,7 +44,7 @@ void Friction::apply_sliding(const Frame& frame_A, const Frame& frame_B, const V
 
 void Friction::apply_turning(const Frame& frame_A, const Frame& frame_B, const Vector3d& axis_A,
                              double moment_scale) {
-  require_not_negative("friction \"" + name_ + "\"", "radius times normal force", moment_scale, "N m");
+  require_not_negative(object_, "radius times normal force", moment_scale, "N m");
   const Vector3d axis = axis_0(frame_A, axis_A);
   const double w = axis.dot(frame_B.angular_velocity() - frame_A.angular_velocity());
   force_ = -law_.coefficient(w) * moment_scale;

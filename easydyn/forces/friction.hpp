@@ -48,7 +48,7 @@ class Friction {
 
  private:
   Eigen::Vector3d axis_0(const Frame& frame_A, const Eigen::Vector3d& axis_A) const;
-  std::string name_;
+  std::string name_, object_;  // object_: as errors call it
   FrictionLaw law_;
   double force_ = 0;
 };

@@ -8,6 +8,7 @@ void System::gravity(const Eigen::Vector3d& field) {
     b.add_force(b.mass() * field, b.position());
     energy().potential -= b.mass() * field.dot(b.position());
   }
+  for (const auto& b : flexible_bodies_) b->apply_weight(field, energy());
 }
 
 }  // namespace easydyn

@@ -11,12 +11,12 @@ namespace easydyn {
 
 using Eigen::Vector3d;
 
-PlaneContact::PlaneContact(std::string name, const Data& data) : name_(std::move(name)), data_(data) {
-  const std::string object = "contact \"" + name_ + "\"";
-  require_positive(object, "stiffness", data.stiffness, "N/m^n");
-  require(data.exponent >= 1, object, "exponent", data.exponent, "", ">= 1");
-  require_not_negative(object, "damping", data.damping, "s/m");
-  data.friction.check(object);
+PlaneContact::PlaneContact(std::string name, const Data& data)
+    : name_(std::move(name)), object_("contact \"" + name_ + "\""), data_(data) {
+  require_positive(object_, "stiffness", data.stiffness, "N/m^n");
+  require(data.exponent >= 1, object_, "exponent", data.exponent, "", ">= 1");
+  require_not_negative(object_, "damping", data.damping, "s/m");
+  data.friction.check(object_);
 }
 
 void PlaneContact::begin() {
@@ -52,18 +52,17 @@ void PlaneContact::apply_point(const Frame& plane, const Frame& body, const Vect
 
 void PlaneContact::apply_sphere(const Frame& plane, const Frame& body, const Vector3d& centre_B,
                                 double radius) {
-  require_positive("contact \"" + name_ + "\"", "radius", radius, "m");
+  require_positive(object_, "radius", radius, "m");
   begin();
   touch(plane, body, body.point(centre_B) - radius * plane.rotation().col(2));
 }
 
 void PlaneContact::apply_cylinder(const Frame& plane, const Frame& body, const Vector3d& centre_B,
                                   const Vector3d& axis_B, double radius, double half_length) {
-  const std::string object = "contact \"" + name_ + "\"";
-  require_positive(object, "radius", radius, "m");
-  require_not_negative(object, "half length", half_length, "m");
+  require_positive(object_, "radius", radius, "m");
+  require_not_negative(object_, "half length", half_length, "m");
   const double length = axis_B.norm();
-  require(length > 0, object, "length of the axis", length, "", "> 0");
+  require(length > 0, object_, "length of the axis", length, "", "> 0");
   begin();
   const Vector3d axis = body.direction(axis_B / length), normal = plane.rotation().col(2);
 

@@ -49,7 +49,7 @@ class PlaneContact {
  private:
   void begin();
   void touch(const Frame& plane, const Frame& body, const Eigen::Vector3d& p_0P);
-  std::string name_;
+  std::string name_, object_;  // object_: as errors call it
   Data data_;
   Eigen::Vector3d force_ = Eigen::Vector3d::Zero();
   double depth_ = 0;

@@ -18,15 +18,18 @@ double compute_twist_angle(const Frame& frame_A, const Frame& frame_B, const Vec
 
 TorsionalSpringDamper::TorsionalSpringDamper(std::string name, double stiffness, double damping,
                                              double free_angle)
-    : name_(std::move(name)), stiffness_(stiffness), damping_(damping), free_angle_(free_angle) {
-  const std::string object = "torsional spring \"" + name_ + "\"";
-  require_not_negative(object, "stiffness", stiffness, "N m/rad");
-  require_not_negative(object, "damping", damping, "N m s/rad");
-  require_finite(object, "free angle", free_angle, "rad");
+    : name_(std::move(name)),
+      object_("torsional spring \"" + name_ + "\""),
+      stiffness_(stiffness),
+      damping_(damping),
+      free_angle_(free_angle) {
+  require_not_negative(object_, "stiffness", stiffness, "N m/rad");
+  require_not_negative(object_, "damping", damping, "N m s/rad");
+  require_finite(object_, "free angle", free_angle, "rad");
 }
 
 TorsionalSpringDamper& TorsionalSpringDamper::set_stops(const Stops& stops) {
-  stops.check("torsional spring \"" + name_ + "\"", "rad");
+  stops.check(object_, "rad");
   stops_ = stops;
   return *this;
 }
@@ -34,7 +37,7 @@ TorsionalSpringDamper& TorsionalSpringDamper::set_stops(const Stops& stops) {
 void TorsionalSpringDamper::apply(const Frame& frame_A, const Frame& frame_B, const Vector3d& axis_A,
                                   double angle) {
   const double length = axis_A.norm();
-  require(length > 0, "torsional spring \"" + name_ + "\"", "length of the axis", length, "", "> 0");
+  require(length > 0, object_, "length of the axis", length, "", "> 0");
   const Vector3d axis = frame_A.direction(axis_A / length);
   angle_ = angle;
   const double rate = axis.dot(frame_B.angular_velocity() - frame_A.angular_velocity());

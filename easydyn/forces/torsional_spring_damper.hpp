@@ -38,7 +38,7 @@ class TorsionalSpringDamper {
   const std::string& name() const { return name_; }
 
  private:
-  std::string name_;
+  std::string name_, object_;  // object_: as errors call it
   double stiffness_, damping_, free_angle_;
   std::optional<Stops> stops_;
   double moment_ = 0, angle_ = 0;

@@ -29,7 +29,7 @@ class Coordinate {
   int index() const;
 
   /// Adds the generalised force Q [N, N m] that works on this coordinate, in System::forces(). Its energy is the
-  /// caller's to account for. @throws ModelError outside forces()
+  /// caller's to account for; where the coordinate is held, what holds it supplies -Q times its rate. @throws ModelError outside forces()
   void add_force(double Q) const;
 
   void lock(double value);                                        ///< holds it at a value

@@ -28,6 +28,7 @@ void MotionTree::clear(double t) {
   t_ = t;
   size_ = 0;
   bodies_.clear();
+  deformable_.clear();
   energy_ = {};
   velocities_known_ = false;
 }
@@ -117,6 +118,7 @@ void MotionTree::compute_velocities() {
     O_ = b.p;
     break;
   }
+  if (O_.isZero() && !deformable_.empty()) O_ = deformable_.front()->origin();
 
   for (int i = 0; i < size_; ++i) {
     Joint& k = joints_[static_cast<std::size_t>(i)];
@@ -136,6 +138,7 @@ void MotionTree::compute_velocities() {
 }
 
 void MotionTree::compute_accelerations(const double* qdd) {
+  qdd_ = qdd;
   for (int i = 0; i < size_; ++i) {
     Joint& k = joints_[static_cast<std::size_t>(i)];
     k.A = k.parent >= 0 ? joints_[static_cast<std::size_t>(k.parent)].A : Twist{};
@@ -160,8 +163,10 @@ void MotionTree::add_residual(const double* qd, double* r, double* drive_power) 
     k.f += spatial::cross(k.V, I * k.V);
   }
 
+  if (!deformable_.empty()) add_deformable_forces(qd, r, drive_power);
+
   // ... which are handed down to the ground and projected on the way.
-  double power = 0;
+  double power = drive_power ? *drive_power : 0;
   for (int i = size_ - 1; i >= 0; --i) {
     Joint& k = joints_[static_cast<std::size_t>(i)];
     const double tau = spatial::dot(k.S, k.f);
@@ -193,10 +198,73 @@ void MotionTree::add_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M) {
     }
     if (k.parent >= 0) joints_[static_cast<std::size_t>(k.parent)].composite += k.composite;
   }
+  if (!deformable_.empty()) add_deformable_mass(M);
+}
+
+DeformableInertia::FrameMotion MotionTree::frame_motion_of(const DeformableInertia& d) const {
+  const int k = d.motion();
+  if (k < 0) return {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  const Joint& joint = joints_[static_cast<std::size_t>(k)];
+  return {joint.V.w, velocity_at(k, d.origin()), joint.A.w, acceleration_at(k, d.origin())};
+}
+
+void MotionTree::add_deformable_forces(const double* qd, double* r, double* drive_power) {
+  for (DeformableInertia* const d : deformable_) {
+    const auto coordinates = d->shape_coordinates();
+    const auto m = static_cast<Eigen::Index>(coordinates.size());
+    shape_accelerations_.resize(m);
+    shape_forces_.resize(m);
+    for (Eigen::Index j = 0; j < m; ++j) {
+      const Expr& e = coordinates[static_cast<std::size_t>(j)];
+      shape_accelerations_[j] = e.bias() + (qdd_ ? e.gradient().dot(qdd_) : 0.0);
+    }
+    const Wrench f = d->compute_inertia_force(frame_motion_of(*d), shape_accelerations_, shape_forces_);
+    if (d->motion() >= 0)
+      joints_[static_cast<std::size_t>(d->motion())].f +=
+          {f.moment + (d->origin() - O_).cross(f.force), f.force};
+    for (Eigen::Index j = 0; j < m; ++j) {
+      const Expr& e = coordinates[static_cast<std::size_t>(j)];
+      for (const Gradient::Entry& g : e.gradient()) r[g.coordinate] += g.value * shape_forces_[j];
+      if (drive_power) *drive_power += shape_forces_[j] * (e.rate() - e.gradient().dot(qd));
+    }
+  }
+}
+
+// Partial velocities of F along the path to the ground, and the shape coordinates, are the columns of a Jacobian.
+void MotionTree::add_deformable_mass(Eigen::Ref<Eigen::MatrixXd> M) {
+  struct Column {
+    const Gradient* gradient;
+    Eigen::VectorXd value;
+  };
+  for (DeformableInertia* const d : deformable_) {
+    const Eigen::MatrixXd& mass = d->compute_mass_matrix();
+    std::vector<Column> columns;
+    for (int k = d->motion(); k >= 0; k = joints_[static_cast<std::size_t>(k)].parent) {
+      const Joint& joint = joints_[static_cast<std::size_t>(k)];
+      Column c{&joint.gradient, Eigen::VectorXd::Zero(mass.rows())};
+      c.value.head<3>() = joint.S.w;
+      c.value.segment<3>(3) = joint.S.v + joint.S.w.cross(d->origin() - O_);
+      columns.push_back(std::move(c));
+    }
+    const auto coordinates = d->shape_coordinates();
+    for (std::size_t j = 0; j < coordinates.size(); ++j)
+      columns.push_back(
+          {&coordinates[j].gradient(), Eigen::VectorXd::Unit(mass.rows(), 6 + static_cast<Eigen::Index>(j))});
+    for (const Column& a : columns) {
+      const Eigen::VectorXd momentum = mass * a.value;
+      for (const Column& b : columns) {
+        const double H = b.value.dot(momentum);
+        for (const Gradient::Entry& ga : *a.gradient)
+          for (const Gradient::Entry& gb : *b.gradient)
+            M(ga.coordinate, gb.coordinate) += ga.value * gb.value * H;
+      }
+    }
+  }
 }
 
 double MotionTree::kinetic_energy() const {
   double T = 0;
+  for (DeformableInertia* const d : deformable_) T += d->kinetic_energy(frame_motion_of(*d));
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].motion < 0) continue;
     const Twist& V = joints_[static_cast<std::size_t>(bodies_[b].motion)].V;

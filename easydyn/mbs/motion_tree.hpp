@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "easydyn/math/expr.hpp"
@@ -15,6 +16,27 @@ struct EnergyAccounts {
   double potential = 0;   ///< [J]
   double dissipated = 0;  ///< power turned into heat [W]
   double supplied = 0;    ///< power brought in by external forces and drives [W]
+};
+
+/// A body whose inertia is not that of a rigid one: it moves in shape coordinates of its own about a frame F that the
+/// tree carries (`FlexibleBody`).
+class DeformableInertia {
+ public:
+  /// Of F, in world axes: angular velocity and acceleration, velocity and acceleration of the origin.
+  struct FrameMotion {
+    Eigen::Vector3d w, v, w_dot, v_dot;
+  };
+  virtual ~DeformableInertia() = default;
+  virtual int motion() const = 0;                     ///< that carries F; -1: fixed to the ground
+  virtual const Eigen::Vector3d& origin() const = 0;  ///< of F
+  virtual std::span<const Expr> shape_coordinates() const = 0;
+  /// Inertia force and moment about the origin, world axes, and those on the shape coordinates.
+  virtual spatial::Wrench compute_inertia_force(const FrameMotion& motion,
+                                                const Eigen::VectorXd& accelerations,
+                                                Eigen::VectorXd& shape_forces) = 0;
+  /// Of (w, v) of F in world axes and the rates of the shape coordinates.
+  virtual const Eigen::MatrixXd& compute_mass_matrix() = 0;
+  virtual double kinetic_energy(const FrameMotion& motion) = 0;
 };
 
 /// The varying motions of a system at one instant, and the sweeps over them.
@@ -59,6 +81,9 @@ class MotionTree {
   int add_translation(int parent, const Eigen::Vector3d& axis_0, const Expr& displacement);
   void add_body(const Inertia& inertia, const Eigen::Matrix3d& R, const Eigen::Vector3d& p, int motion);
 
+  /// To be added before compute_velocities(); it must live until the next clear().
+  void add_deformable(DeformableInertia& inertia) { deformable_.push_back(&inertia); }
+
   /// The point that is now at p_0P (world axes) and moves with motion k, as expressions; in positions(), too.
   ExprVector express_point(int motion, const Eigen::Vector3d& p_0P) const;
   /// The direction d (world axes) turned by motion k, as expressions.
@@ -102,6 +127,9 @@ class MotionTree {
     spatial::Inertia composite;  // backward sweep
   };
   void check_velocities() const;
+  DeformableInertia::FrameMotion frame_motion_of(const DeformableInertia& d) const;
+  void add_deformable_forces(const double* qd, double* r, double* drive_power);
+  void add_deformable_mass(Eigen::Ref<Eigen::MatrixXd> M);
   /// Twist and bias acceleration of motion k about the point P; the motions on the way go to `path`, root first.
   void follow(int motion, const Eigen::Vector3d& P, std::vector<int>& path, spatial::Twist& V,
               spatial::Twist& A) const;
@@ -112,6 +140,9 @@ class MotionTree {
   int size_ = 0;  // joints in use; the others keep their memory
   std::vector<Carried> bodies_;
   std::vector<spatial::Inertia> body_inertia_;  // about O, world axes
+  std::vector<DeformableInertia*> deformable_;
+  const double* qdd_ = nullptr;                         // of the last accelerations
+  Eigen::VectorXd shape_accelerations_, shape_forces_;  // scratch
   Eigen::Vector3d O_ = Eigen::Vector3d::Zero();
   bool velocities_known_ = false;
   EnergyAccounts energy_;

@@ -36,7 +36,9 @@ int Coordinate::index() const {
 
 void Coordinate::add_force(double Q) const {
   if (!system_->in_forces_) throw ModelError("a generalised force is added inside forces() only");
-  system_->generalized_forces_.push_back({system_->data_of(*this).slot, Q});
+  const System::CoordinateData& c = system_->data_of(*this);
+  system_->generalized_forces_.push_back({c.slot, Q});
+  if (c.is_held) system_->energy().supplied -= Q * c.now.rate;
 }
 
 void Coordinate::lock(double value) {
@@ -181,6 +183,13 @@ Body& System::body(std::string name, const Inertia& inertia) {
   return bodies_.emplace_back(std::move(name), inertia);
 }
 
+FlexibleBody& System::flexible_body(std::string name, const FlexibleModel& model, const ShapeOptions& shapes,
+                                    double damping_ratio) {
+  flexible_bodies_.push_back(
+      std::unique_ptr<FlexibleBody>(new FlexibleBody(*this, std::move(name), model, shapes, damping_ratio)));
+  return *flexible_bodies_.back();
+}
+
 std::shared_ptr<LoopClosure> System::add_loop(std::string name, std::span<const double> guess) {
   for (const auto& loop : loops_)
     if (loop->name() == name)
@@ -264,6 +273,7 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
   tree_.clear(t_);
   ports_.clear();
   for (Body& b : bodies_) b.is_placed_ = false;
+  for (const auto& b : flexible_bodies_) b->is_placed_ = false;
   for (VelocityConstraint& c : constraints_) c.is_given_ = false;
   {
     MotionTree::Scope scope(tree_);
@@ -280,11 +290,19 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
     tree_.add_body(b.inertia_, b.frame_.rotation(), b.frame_.origin(), b.frame_.motion_index());
   }
 
+  for (const auto& b : flexible_bodies_) {
+    if (!b->is_placed_)
+      throw ModelError(fmt::format("flexible body \"{}\" of system \"{}\" is not placed by positions()",
+                                   b->name(), name_));
+    tree_.add_deformable(*b);
+  }
+
   // Velocities, then the user's forces, which may use them.
   tree_.compute_velocities();
   generalized_forces_.clear();
   std::fill(rates_.begin(), rates_.end(), 0.0);
   in_forces_ = true;
+  for (const auto& b : flexible_bodies_) b->apply_elastic_forces(tree_.energy());
   forces();
 }
 

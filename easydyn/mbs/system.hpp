@@ -9,6 +9,7 @@
 
 #include "easydyn/mbs/body.hpp"
 #include "easydyn/mbs/coordinate.hpp"
+#include "easydyn/mbs/flexible_body.hpp"
 #include "easydyn/mbs/frame.hpp"
 #include "easydyn/mbs/free_motion.hpp"
 #include "easydyn/mbs/linear_structure.hpp"
@@ -49,6 +50,10 @@ class System {
   /// Declares a coordinate with its value and rate at the start.
   Coordinate coordinate(std::string name, double initial = 0, double initial_rate = 0);
   Body& body(std::string name, const Inertia& inertia);
+  /// Declares an elastic body and its shape coordinates, named "body.0", "body.1" ...
+  /// @param damping_ratio  of its own modes, the rest of the system at rest, >= 0
+  FlexibleBody& flexible_body(std::string name, const FlexibleModel& model, const ShapeOptions& shapes,
+                              double damping_ratio = 0);
   VelocityConstraint& velocity_constraint(std::string name);
   FirstOrderState first_order_state(std::string name, double initial = 0);
   Input input(std::string name, double value = 0);
@@ -81,6 +86,7 @@ class System {
   /// Name of equation i: of the coordinate, the first-order state or the constraint.
   std::string equation_name(int i) const;
   const std::deque<Body>& bodies() const { return bodies_; }
+  const std::vector<std::unique_ptr<FlexibleBody>>& flexible_bodies() const { return flexible_bodies_; }
   const std::deque<VelocityConstraint>& velocity_constraints() const { return constraints_; }
   const std::string& input_name(int i) const { return inputs_[static_cast<std::size_t>(i)].name; }
   double input_value(int i) const { return inputs_[static_cast<std::size_t>(i)].value; }
@@ -220,6 +226,7 @@ class System {
   std::vector<double> rates_;                     // of the first-order states
   std::vector<double> qd_all_, qdd_all_, r_all_;  // by slot, where there are held ones
   std::deque<Body> bodies_;
+  std::vector<std::unique_ptr<FlexibleBody>> flexible_bodies_;
   std::vector<std::unique_ptr<LinearStructure>> structures_;
   std::vector<std::shared_ptr<LoopClosure>> loops_;
   int loop_unknowns_ = 0;

@@ -30,14 +30,40 @@ Mode make_mode(std::complex<double> pole, VectorXcd shape) {
   return {pole, w / two_pi, w > 0 ? -pole.real() / w : 0.0, std::move(shape)};
 }
 
+// Scales rows and columns by powers of two so that both have like norms: entries in pascal beside some in metre would
+// drown in each other's rounding. Returns the scales; an eigenvector of the scaled matrix times them is one of A.
+// Reference: B. N. Parlett, C. Reinsch, Numer. Math. 13, 1969, algorithm "balance".
+Eigen::VectorXd balance(MatrixXd& A) {
+  const Eigen::Index n = A.rows();
+  Eigen::VectorXd scales = Eigen::VectorXd::Ones(n);
+  for (bool has_changed = true; has_changed;) {
+    has_changed = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double diagonal = std::abs(A(i, i)), column = A.col(i).lpNorm<1>() - diagonal,
+                   row = A.row(i).lpNorm<1>() - diagonal;
+      if (!(column > 0) || !(row > 0)) continue;
+      const double f = std::exp2(std::round(0.5 * std::log2(row / column)));
+      if (column * f + row / f >= 0.95 * (column + row)) continue;
+      A.col(i) *= f;
+      A.row(i) /= f;
+      scales[i] *= f;
+      has_changed = true;
+    }
+  }
+  return scales;
+}
+
 // One mode per pair of complex eigenvalues, one per real one; the first n entries are the coordinates.
-std::vector<Mode> modes_of(const MatrixXd& A, Eigen::Index n) {
+std::vector<Mode> modes_of(MatrixXd A, Eigen::Index n) {
+  const Eigen::VectorXd scales = balance(A);
   const Eigen::EigenSolver<MatrixXd> eigen(A);
   if (eigen.info() != Eigen::Success) throw SolverError("modes: the eigenvalue iteration did not converge");
   std::vector<Mode> modes;
   for (Eigen::Index i = 0; i < A.rows(); ++i)
-    if (eigen.eigenvalues()[i].imag() >= 0)
-      modes.push_back(make_mode(eigen.eigenvalues()[i], eigen.eigenvectors().col(i).head(n)));
+    if (eigen.eigenvalues()[i].imag() >= 0) {
+      const VectorXcd vector = (scales.asDiagonal() * eigen.eigenvectors().col(i)).normalized();
+      modes.push_back(make_mode(eigen.eigenvalues()[i], vector.head(n)));
+    }
   return modes;
 }
 

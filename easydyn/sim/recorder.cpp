@@ -1,5 +1,7 @@
 #include "easydyn/sim/recorder.hpp"
 
+#include <fmt/format.h>
+
 #include "easydyn/require.hpp"
 
 namespace easydyn {
@@ -10,6 +12,18 @@ using Eigen::VectorXd;
 Recorder::Recorder(System& system, double interval) : system_(system), interval_(interval) {
   require_positive("recorder", "interval", interval, "s");
   poses_.resize(system.bodies().size());
+}
+
+void Recorder::watch(std::string name, std::function<double(const State&)> value) {
+  if (!states_.empty())
+    throw ModelError(fmt::format("recorder: \"{}\" is to be watched from the start", name));
+  watched_.push_back({std::move(name), std::move(value), {}});
+}
+
+const std::vector<double>& Recorder::watched(const std::string& name) const {
+  for (const Watched& w : watched_)
+    if (w.name == name) return w.history;
+  throw ModelError(fmt::format("recorder: nothing named \"{}\" is watched", name));
 }
 
 void Recorder::operator()(const State& state) {
@@ -25,6 +39,7 @@ void Recorder::operator()(const State& state) {
 
   states_.push_back(state);
   energies_.push_back({now.kinetic, now.potential, dissipated_, supplied_});
+  for (Watched& w : watched_) w.history.push_back(w.value(state));
   std::size_t b = 0;
   for (const Body& body : system_.bodies())
     poses_[b++].push_back({body.position(), Eigen::Quaterniond(body.frame().rotation())});
@@ -72,6 +87,16 @@ visu::Chart Recorder::energy_chart() const {
   if (dissipated.cwiseAbs().maxCoeff() > 0) chart.series.push_back({"dissipated", time(), dissipated});
   if (supplied.cwiseAbs().maxCoeff() > 0) chart.series.push_back({"supplied", time(), supplied});
   chart.series.push_back({"balance (constant)", time(), total_energy(), visu::Stroke::dashed});
+  return chart;
+}
+
+visu::Chart Recorder::watched_chart(const std::string& title, const std::string& label,
+                                    const std::string& unit, const std::vector<std::string>& names) const {
+  visu::Chart chart{.title = title, .x = {"time", "s"}, .y = {label, unit}, .series = {}};
+  for (const std::string& name : names) {
+    const std::vector<double>& history = watched(name);
+    chart.series.push_back({name, time(), VectorXd::Map(history.data(), static_cast<Index>(history.size()))});
+  }
   return chart;
 }
 

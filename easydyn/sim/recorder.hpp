@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "easydyn/mbs/system.hpp"
@@ -25,20 +27,36 @@ class Recorder {
   /// (trapezoidal).
   void operator()(const State& state);
 
+  /// Records one more number with each state: anything that the system can tell after an evaluation.
+  void watch(std::string name, std::function<double(const State&)> value);
+
   Eigen::VectorXd time() const;
+  /// History of a watched number. @throws ModelError if there is none of this name
+  const std::vector<double>& watched(const std::string& name) const;
   /// History of coordinate i.
   Eigen::VectorXd coordinate(int i) const;
   /// Energy that should stay constant: kinetic + potential + dissipated - supplied [J].
   Eigen::VectorXd total_energy() const;
+  /// Energy supplied since the start [J].
+  double supplied_energy() const { return supplied_; }
 
   visu::Chart coordinate_chart(const std::string& unit) const;
   visu::Chart energy_chart() const;
+  /// Watched numbers over time, in one diagram. @throws ModelError if there is none of a name
+  visu::Chart watched_chart(const std::string& title, const std::string& label, const std::string& unit,
+                            const std::vector<std::string>& names) const;
   /// A scene with one moving frame per body; it has no items yet.
   visu::Scene scene() const;
 
  private:
+  struct Watched {
+    std::string name;
+    std::function<double(const State&)> value;
+    std::vector<double> history;
+  };
   System& system_;
   double interval_;
+  std::vector<Watched> watched_;
   std::vector<State> states_;
   std::vector<EnergyBalance> energies_;         // dissipated and supplied as energies since the start [J]
   std::vector<std::vector<visu::Pose>> poses_;  // [body][record]

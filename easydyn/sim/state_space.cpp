@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <numbers>
 
 #include "easydyn/error.hpp"
@@ -31,14 +32,15 @@ StateSpace linearize_state_space(System& system, const State& state, double diff
     return y;
   };
   // (f(-2d) - 8 f(-d) + 8 f(d) - f(2d)) / 12 d
-  const auto derivative = [&](auto set) -> VectorXd {
+  const auto derivative = [&](auto set, double scale = 1) -> VectorXd {
+    const double step = difference * scale;
     const auto at = [&](double d) {
       set(d);
       return rates();
     };
-    const VectorXd sum = at(-2 * difference) - 8 * at(-difference) + 8 * at(difference) - at(2 * difference);
+    const VectorXd sum = at(-2 * step) - 8 * at(-step) + 8 * at(step) - at(2 * step);
     set(0.0);
-    return sum / (12 * difference);
+    return sum / (12 * step);
   };
   MatrixXd by_y(ny + nz, ny), by_u(ny + nz, nu);
   for (int i = 0; i < n; ++i) {
@@ -46,10 +48,12 @@ StateSpace linearize_state_space(System& system, const State& state, double diff
     by_y.col(n + i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; });
   }
   for (int i = 0; i < nx; ++i)
-    by_y.col(2 * n + i) = derivative([&](double d) { shifted.x[i] = state.x[i] + d; });
+    by_y.col(2 * n + i) =
+        derivative([&](double d) { shifted.x[i] = state.x[i] + d; }, std::max(1.0, std::abs(state.x[i])));
   for (int i = 0; i < nu; ++i) {
     const double value = system.input_value(i);
-    by_u.col(i) = derivative([&](double d) { system.set_input(i, value + d); });
+    by_u.col(i) =
+        derivative([&](double d) { system.set_input(i, value + d); }, std::max(1.0, std::abs(value)));
     system.set_input(i, value);
   }
   StateSpace space;

@@ -19,7 +19,7 @@ struct StateSpace {
 };
 
 /// A, B, C and D by fourth-order central differences of the accelerations, rates and outputs.
-/// @param difference  step in q, qd, x and u
+/// @param difference  step in q and qd; in x and u, times their own size where it is above 1
 StateSpace linearize_state_space(System& system, const State& state, double difference = 1e-4);
 
 /// Response to u = Re(U exp(i w t)): y = Re(H U exp(i w t)), H(w) = (i w - A)^-1 B, one matrix per frequency.

@@ -53,6 +53,16 @@ TEST(StateSpace, GivesTheModesOfCoordinatesAndFirstOrderStatesTogether) {
   }
 }
 
+TEST(StateSpace, GivesModesWhateverTheUnitsOfItsStates) {
+  // A mass on two oil chambers, pressures in pascal: w^2 = sum of a_i b_i; entries from 1e-7 to 1e9.
+  StateSpace space;
+  space.coordinates = 1;
+  space.A =
+      Eigen::MatrixXd{{0, 1, 0, 0}, {0, 0, 2.655e-7, -1.848e-7}, {0, -1.1377e9, 0, 0}, {0, 2.8073e9, 0, 0}};
+  const double w = std::sqrt(2.655e-7 * 1.1377e9 + 1.848e-7 * 2.8073e9);
+  EXPECT_NEAR(compute_modes(space).back().frequency, w / (2 * M_PI), 1e-12 * w);
+}
+
 TEST(StateSpace, SeesItsOutputs) {
   class Sensor : public Motor {
    public:
