@@ -49,12 +49,12 @@ class Expr {
   /// True for numbers and functions of numbers: depends neither on q nor on t.
   bool is_constant() const { return constant_; }
 
-  Expr operator-() const { return linear(-1, *this, 0, Expr()); }
+  Expr operator-() const { return scaled(-1, *this); }
   friend Expr operator+(const Expr& a, const Expr& b) { return linear(1, a, 1, b); }
   friend Expr operator-(const Expr& a, const Expr& b) { return linear(1, a, -1, b); }
   friend Expr operator*(const Expr& a, const Expr& b) {
-    if (a.constant_) return linear(a.value_, b, 0, Expr());
-    if (b.constant_) return linear(b.value_, a, 0, Expr());
+    if (a.constant_) return scaled(a.value_, b);
+    if (b.constant_) return scaled(b.value_, a);
     return Expr(a.value_ * b.value_, a.rate_ * b.value_ + a.value_ * b.rate_,
                 a.bias_ * b.value_ + 2 * a.rate_ * b.rate_ + a.value_ * b.bias_,
                 Gradient::combine(b.value_, a.gradient_, a.value_, b.gradient_));
@@ -71,6 +71,10 @@ class Expr {
  private:
   Expr(double value, double rate, double bias, Gradient gradient)
       : value_(value), rate_(rate), bias_(bias), constant_(false), gradient_(std::move(gradient)) {}
+  static Expr scaled(double a, const Expr& A) {
+    if (A.constant_) return Expr(a * A.value_);
+    return Expr(a * A.value_, a * A.rate_, a * A.bias_, Gradient::scale(a, A.gradient_));
+  }
   static Expr linear(double a, const Expr& A, double b, const Expr& B) {
     const double value = a * A.value_ + b * B.value_;
     if (A.constant_ && B.constant_) return Expr(value);

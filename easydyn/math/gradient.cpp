@@ -46,36 +46,28 @@ BlockPool& pool() {
 
 }  // namespace
 
-Gradient Gradient::unit(int coordinate) {
+Gradient Gradient::scale_all(double a, Entries A) {
   Gradient g;
-  g.data_[0] = {coordinate, 1.0};
-  g.size_ = 1;
+  g.reserve(A.size());
+  Entry* out = g.data();
+  for (const Entry& e : A) *out++ = {e.coordinate, a * e.value};
+  g.size_ = static_cast<std::uint32_t>(A.size());
   return g;
 }
 
-Gradient Gradient::scale(double a, const Gradient& A) {
+Gradient Gradient::without(Entries A, int first, int count) {
   Gradient g;
-  g.reserve(A.size_);
-  for (std::size_t i = 0; i < A.size_; ++i) g.data_[i] = {A.data_[i].coordinate, a * A.data_[i].value};
-  g.size_ = A.size_;
-  return g;
-}
-
-Gradient Gradient::without(const Gradient& A, int first, int count) {
-  Gradient g;
-  g.reserve(A.size_);
+  g.reserve(A.size());
   for (const Entry& e : A)
-    if (e.coordinate < first || e.coordinate >= first + count) g.data_[g.size_++] = e;
+    if (e.coordinate < first || e.coordinate >= first + count) g.data()[g.size_++] = e;
   return g;
 }
 
-Gradient Gradient::combine(double a, const Gradient& A, double b, const Gradient& B) {
-  if (B.empty()) return scale(a, A);
-  if (A.empty()) return scale(b, B);
+Gradient Gradient::merge(double a, Entries A, double b, Entries B) {
   Gradient g;
-  g.reserve(A.size_ + B.size_);
+  g.reserve(A.size() + B.size());
   const Entry *i = A.begin(), *j = B.begin();
-  Entry* out = g.data_;
+  Entry* out = g.data();
   while (i != A.end() || j != B.end()) {
     if (j == B.end() || (i != A.end() && i->coordinate < j->coordinate)) {
       *out++ = {i->coordinate, a * i->value};
@@ -89,27 +81,25 @@ Gradient Gradient::combine(double a, const Gradient& A, double b, const Gradient
       ++j;
     }
   }
-  g.size_ = static_cast<std::size_t>(out - g.data_);
+  g.size_ = static_cast<std::uint32_t>(out - g.data());
   return g;
 }
 
-void Gradient::assign(const Gradient& other) {
+void Gradient::append_all(const Gradient& other) {
   reserve(other.size_);
-  std::copy(other.begin(), other.end(), data_);
+  std::copy(other.begin(), other.end(), data());
   size_ = other.size_;
 }
 
-void Gradient::take(Gradient& other) noexcept {
-  if (other.capacity_ > inline_capacity) {
-    data_ = other.data_;
-    capacity_ = other.capacity_;
-    size_ = other.size_;
-    other.data_ = other.inline_;
-    other.capacity_ = inline_capacity;
+void Gradient::take_all(Gradient& other) noexcept {
+  if (other.is_in_place()) {
+    std::copy(other.begin(), other.end(), in_place_);
   } else {
-    std::copy(other.begin(), other.end(), data_);
-    size_ = other.size_;
+    block_ = other.block_;
+    capacity_ = other.capacity_;
+    other.capacity_ = in_place_capacity;
   }
+  size_ = other.size_;
   other.size_ = 0;
 }
 
@@ -117,15 +107,14 @@ void Gradient::reserve(std::size_t capacity) {
   size_ = 0;
   if (capacity <= capacity_) return;
   release();
-  capacity_ = std::bit_ceil(capacity);
-  data_ = pool().take(capacity_);
+  capacity = std::bit_ceil(capacity);
+  block_ = pool().take(capacity);
+  capacity_ = static_cast<std::uint32_t>(capacity);
 }
 
-void Gradient::release() noexcept {
-  if (capacity_ > inline_capacity) pool().give_back(data_, capacity_);
-  data_ = inline_;
-  capacity_ = inline_capacity;
-  size_ = 0;
+void Gradient::give_back() noexcept {
+  pool().give_back(block_, capacity_);
+  capacity_ = in_place_capacity;
 }
 
 }  // namespace easydyn

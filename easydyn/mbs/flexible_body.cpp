@@ -135,7 +135,7 @@ spatial::Wrench FlexibleBody::compute_inertia_force(const FrameMotion& motion, c
     if (rows == 6) moment += G_.segment<3>(row + 3) + w.cross(P_.segment<3>(row + 3));
   }
   shape_forces.noalias() = point_shapes_.transpose() * G_;
-  return {R * moment, R * force};
+  return {spatial::Vector(R * moment), spatial::Vector(R * force)};
 }
 
 const MatrixXd& FlexibleBody::compute_mass_matrix() {

@@ -6,6 +6,7 @@
 namespace easydyn {
 
 using Eigen::Vector3d;
+using spatial::Vector;
 
 namespace {
 MotionTree& current_tree() {
@@ -16,20 +17,52 @@ MotionTree& current_tree() {
 }  // namespace
 
 Frame Frame::followed_by(const Motion& motion) const {
-  Frame result = *this;
-  if (motion.is_rotation_) {
+  const Vector x(&R_(0, 0)), y(&R_(0, 1)), z(&R_(0, 2));
+  Frame result(*this);
+  const auto turn_about = [&](const Vector& axis_0) {
     const Expr& angle = motion.e_[0];
-    if (!angle.is_constant()) {
-      result.tree_ = &current_tree();
-      result.motion_ = result.tree_->add_rotation(motion_, R_ * motion.axis_, p_, angle);
-    }
-    result.R_ = R_ * Eigen::AngleAxisd(angle.value(), motion.axis_).toRotationMatrix();
-  } else {
-    result.p_ += R_ * Vector3d(motion.e_[0].value(), motion.e_[1].value(), motion.e_[2].value());
-    for (int i = 0; i < 3; ++i) {
-      if (motion.e_[i].is_constant()) continue;
-      result.tree_ = &current_tree();
-      result.motion_ = result.tree_->add_translation(result.motion_, R_.col(i), motion.e_[i]);
+    if (angle.is_constant()) return;
+    result.tree_ = &current_tree();
+    result.motion_ = result.tree_->add_rotation(motion_, axis_0, Vector(p_), angle);
+  };
+  const double angle = motion.e_[0].value();
+  double c = 1, s = 0;
+  if (motion.kind_ <= Motion::Kind::rotation_z) {
+    c = std::cos(angle);
+    s = std::sin(angle);
+  }
+  switch (motion.kind_) {
+    // About one of the axes: it stays, the two others turn in their plane.
+    case Motion::Kind::rotation_x:
+      turn_about(x);
+      Vector::write_columns(x, c * y + s * z, c * z - s * y, result.R_);
+      break;
+    case Motion::Kind::rotation_y:
+      turn_about(y);
+      Vector::write_columns(c * x - s * z, y, c * z + s * x, result.R_);
+      break;
+    case Motion::Kind::rotation_z:
+      turn_about(z);
+      Vector::write_columns(c * x + s * y, c * y - s * x, z, result.R_);
+      break;
+    case Motion::Kind::rotation:
+      turn_about(motion.vector_[0] * x + motion.vector_[1] * y + motion.vector_[2] * z);
+      result.R_.noalias() = R_ * Eigen::AngleAxisd(angle, motion.vector_).toRotationMatrix();
+      break;
+    case Motion::Kind::offset:
+      result.p_ = Vector(p_) + motion.vector_[0] * x + motion.vector_[1] * y + motion.vector_[2] * z;
+      break;
+    case Motion::Kind::translation: {
+      const Vector columns[3] = {x, y, z};
+      Vector p(p_);
+      for (int i = 0; i < 3; ++i) {
+        const Expr& displacement = motion.e_[i];
+        p += displacement.value() * columns[i];
+        if (displacement.is_constant()) continue;
+        result.tree_ = &current_tree();
+        result.motion_ = result.tree_->add_translation(result.motion_, columns[i], displacement);
+      }
+      result.p_ = p;
     }
   }
   return result;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>  // cross products of the user
 
 #include "easydyn/math/expr.hpp"
 #include "easydyn/math/expr_vector.hpp"
@@ -14,29 +15,38 @@ class MotionTree;
 class Motion {
  public:
   static Motion rotation(const Eigen::Vector3d& unit_axis, Expr angle) {
-    return Motion(true, unit_axis, std::move(angle), 0, 0);
+    return Motion(unit_axis, std::move(angle));
   }
   static Motion translation(Expr x, Expr y, Expr z) {
-    return Motion(false, Eigen::Vector3d::Zero(), std::move(x), std::move(y), std::move(z));
+    return Motion(std::move(x), std::move(y), std::move(z));
   }
 
  private:
   friend class Frame;
-  Motion(bool is_rotation, const Eigen::Vector3d& axis, Expr a, Expr b, Expr c)
-      : is_rotation_(is_rotation), axis_(axis), e_{std::move(a), std::move(b), std::move(c)} {}
-  bool is_rotation_;
-  Eigen::Vector3d axis_;  // in the axes of the frame that the motion starts from
-  Expr e_[3];             // angle, or the three displacements
+  friend Motion rotate_x(Expr angle);
+  friend Motion rotate_y(Expr angle);
+  friend Motion rotate_z(Expr angle);
+  friend Motion translate(const Eigen::Vector3d& p);
+  enum class Kind { rotation_x, rotation_y, rotation_z, rotation, translation, offset };
+  Motion(Kind kind, Expr&& angle) : kind_(kind), e_{std::move(angle), {}, {}} {}
+  Motion(const Eigen::Vector3d& axis, Expr&& angle)
+      : kind_(Kind::rotation), vector_(axis), e_{std::move(angle), {}, {}} {}
+  Motion(Expr&& x, Expr&& y, Expr&& z)
+      : kind_(Kind::translation), e_{std::move(x), std::move(y), std::move(z)} {}
+  explicit Motion(const Eigen::Vector3d& offset) : kind_(Kind::offset), vector_(offset) {}
+  Kind kind_;
+  Eigen::Vector3d vector_;  // the axis, or a constant displacement, in the axes of the frame before
+  Expr e_[3];               // angle, or the three displacements
 };
 
 inline Motion rotate_x(Expr angle) {
-  return Motion::rotation(Eigen::Vector3d::UnitX(), std::move(angle));
+  return Motion(Motion::Kind::rotation_x, std::move(angle));
 }
 inline Motion rotate_y(Expr angle) {
-  return Motion::rotation(Eigen::Vector3d::UnitY(), std::move(angle));
+  return Motion(Motion::Kind::rotation_y, std::move(angle));
 }
 inline Motion rotate_z(Expr angle) {
-  return Motion::rotation(Eigen::Vector3d::UnitZ(), std::move(angle));
+  return Motion(Motion::Kind::rotation_z, std::move(angle));
 }
 /// About any axis, given in the axes of the frame that the motion starts from; it need not have unit length.
 inline Motion rotate(const Eigen::Vector3d& axis, Expr angle) {
@@ -46,7 +56,10 @@ inline Motion translate(Expr x, Expr y, Expr z) {
   return Motion::translation(std::move(x), std::move(y), std::move(z));
 }
 inline Motion translate(const Eigen::Vector3d& p) {
-  return Motion::translation(p.x(), p.y(), p.z());
+  return Motion(p);
+}
+inline Motion translate(double x, double y, double z) {
+  return translate(Eigen::Vector3d(x, y, z));
 }
 
 /// A frame moving with the mechanism: its pose T_0F = (R_0F, p_0F) and the motions that lead to it.

@@ -69,6 +69,19 @@ void LoopClosure::decompose(std::span<const Expr> equations) {
   qr_.setThreshold(rank_threshold);
 }
 
+// As qr_.solve(right), without its temporary vectors: J P = Q R, x = P R^-1 Q^T right.
+template <class X>
+void LoopClosure::solve_least_squares(VectorXd& right, X&& x) {
+  const Eigen::MatrixXd& QR = qr_.matrixQR();
+  const Eigen::Index m = QR.rows(), rank = qr_.nonzeroPivots();
+  double workspace = 0;
+  for (Eigen::Index k = 0; k < rank; ++k)
+    right.tail(m - k).applyHouseholderOnTheLeft(QR.col(k).tail(m - k - 1), qr_.hCoeffs()[k], &workspace);
+  QR.topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(right.head(rank));
+  x.setZero();
+  for (Eigen::Index k = 0; k < rank; ++k) x[qr_.colsPermutation().indices()[k]] = right[k];
+}
+
 bool LoopClosure::take(std::span<const Expr> equations) {
   const auto m = static_cast<Eigen::Index>(equations.size());
   residual_.resize(m);
@@ -79,7 +92,7 @@ bool LoopClosure::take(std::span<const Expr> equations) {
   if (phase_ == Phase::rates) {
     // The second derivatives are those of g with the rates known; gradients as before.
     for (Eigen::Index e = 0; e < m; ++e) right_[e] = -equations[static_cast<std::size_t>(e)].bias();
-    bias_ = qr_.solve(right_);
+    solve_least_squares(right_, bias_);
     return true;
   }
 
@@ -100,7 +113,8 @@ bool LoopClosure::take(std::span<const Expr> equations) {
     p_ = guess_;
     fail(fmt::format("cannot be closed: residual {:.3g} after {} iterations", norm, max_iterations));
   }
-  step_ = qr_.solve(-residual_);
+  right_ = -residual_;
+  solve_least_squares(right_, step_);
 
   // Rounding of the equations: the closure is as good as numbers allow when the step no longer counts.
   const double magnitude = 1 + p_.lpNorm<Eigen::Infinity>();
@@ -121,8 +135,12 @@ bool LoopClosure::take(std::span<const Expr> equations) {
 
   // Rates, and the gradients in the coordinates: dp/dq = -J^+ dg/dq.
   for (Eigen::Index e = 0; e < m; ++e) right_[e] = -equations[static_cast<std::size_t>(e)].rate();
-  rate_ = qr_.solve(right_);
-  inverse_ = qr_.solve(Eigen::MatrixXd::Identity(m, m));
+  solve_least_squares(right_, rate_);
+  inverse_.resize(n_, m);
+  for (Eigen::Index e = 0; e < m; ++e) {
+    right_ = VectorXd::Unit(m, e);
+    solve_least_squares(right_, inverse_.col(e));
+  }
   for (int i = 0; i < n_; ++i) {
     Gradient sum;
     for (Eigen::Index e = 0; e < m; ++e) {

@@ -36,6 +36,9 @@ class LoopClosure {
 
   enum class Phase { newton, line_search, rates };
   void decompose(std::span<const Expr> equations);
+  /// x = J^+ right by the decomposition; `right` is used up.
+  template <class X>
+  void solve_least_squares(Eigen::VectorXd& right, X&& x);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::string system_, name_;

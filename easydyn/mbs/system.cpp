@@ -11,8 +11,8 @@ using Eigen::VectorXd;
 
 Coordinate::operator Expr() const {
   const System::CoordinateData& c = system_->data_of(*this);
-  if (c.is_held) return Expr::of_parts(value(), c.now.rate, c.now.acceleration, Gradient::unit(c.slot));
-  return Expr::coordinate(c.slot, value(), rate());
+  if (!c.is_held && system_->q_) return Expr::coordinate(c.slot, system_->q_[c.slot], system_->qd_[c.slot]);
+  return Expr::of_parts(value(), c.now.rate, c.now.acceleration, Gradient::unit(c.slot));
 }
 
 double Coordinate::value() const {
@@ -404,8 +404,10 @@ void System::compute_residual(const State& state, Eigen::Ref<VectorXd> r) {
   for (int k = 0; k < static_cast<int>(structures_.size()); ++k) {
     const LinearStructure& s = *structures_[static_cast<std::size_t>(k)];
     const int at = structure_offset(k);
-    r.segment(at, s.size()) = s.M() * state.qdd.segment(at, s.size()) +
-                              s.C() * state.qd.segment(at, s.size()) + s.K() * state.q.segment(at, s.size());
+    auto r_s = r.segment(at, s.size());
+    r_s.noalias() = s.M() * state.qdd.segment(at, s.size());
+    r_s.noalias() += s.C() * state.qd.segment(at, s.size());
+    r_s.noalias() += s.K() * state.q.segment(at, s.size());
   }
   for (const PortRecord& p : ports_) {
     const int at = structure_offset(p.structure);
@@ -424,7 +426,7 @@ MatrixXd System::compute_mass_matrix(const State& state) {
   check_size(state);
   place(body_state(state), motion_of(state));
   MatrixXd M = MatrixXd::Zero(size(), size());
-  add_body_mass_matrix(M.topLeftCorner(body_size(), body_size()));
+  compute_body_mass_matrix(M.topLeftCorner(body_size(), body_size()));
   for (int k = 0; k < static_cast<int>(structures_.size()); ++k) {
     const LinearStructure& s = *structures_[static_cast<std::size_t>(k)];
     M.block(structure_offset(k), structure_offset(k), s.size(), s.size()) = MatrixXd(s.M());
@@ -453,22 +455,21 @@ void System::compute_mass_and_bias(const State& state, Eigen::Ref<MatrixXd> M, E
     tree_.add_residual(state.qd.data(), bias.data(), nullptr);
     subtract_generalized_forces(bias.data());
   }
-  M.setZero();
-  add_body_mass_matrix(M);
+  compute_body_mass_matrix(M);
 }
 
 void System::subtract_generalized_forces(double* r) const {
   for (const GeneralizedForce& f : generalized_forces_) r[f.slot] -= f.Q;
 }
 
-void System::add_body_mass_matrix(Eigen::Ref<MatrixXd> M) {
+void System::compute_body_mass_matrix(Eigen::Ref<MatrixXd> M) {
   if (slot_count_ == free_count_) {
-    tree_.add_mass_matrix(M);
+    tree_.compute_mass_matrix(M);
     return;
   }
-  M_all_.setZero(slot_count_, slot_count_);
-  tree_.add_mass_matrix(M_all_);
-  M += M_all_.topLeftCorner(free_count_, free_count_);
+  M_all_.resize(slot_count_, slot_count_);
+  tree_.compute_mass_matrix(M_all_);
+  M = M_all_.topLeftCorner(free_count_, free_count_);
 }
 
 EnergyBalance System::compute_energy(const State& state) {

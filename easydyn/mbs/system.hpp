@@ -114,9 +114,7 @@ class System {
                              Eigen::Ref<Eigen::VectorXd> bias);
   EnergyBalance compute_energy(const State& state);
   /// f of the first-order states x. = f at the last evaluation.
-  Eigen::VectorXd first_order_rates() const {
-    return Eigen::VectorXd::Map(rates_.data(), first_order_size());
-  }
+  Eigen::Map<const Eigen::VectorXd> first_order_rates() const { return {rates_.data(), first_order_size()}; }
   /// Generalised force that holds a held coordinate, at the last evaluation [N, N m].
   double holding_force(const Coordinate& coordinate) const;
   /// Fills the reactions at a state with its accelerations (and lambda).
@@ -203,7 +201,7 @@ class System {
   void fill_held(const BodyState& state);
   PortMotionFunction motion_of(const State& state) const;
   void check_size(const State& state) const;
-  void add_body_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
+  void compute_body_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
   void subtract_generalized_forces(double* r) const;
   std::shared_ptr<LoopClosure> add_loop(std::string name, std::span<const double> guess);
 

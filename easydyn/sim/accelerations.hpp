@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <vector>
 
 #include "easydyn/mbs/system.hpp"
@@ -14,6 +13,9 @@ namespace easydyn {
 ///
 ///   [ M  -A^T ] [ qdd    ]   [ -(h - Q)          ]
 ///   [ A   0   ] [ lambda ] = [ -phi. (qdd = 0)   ]      x. = f
+///
+/// By Cholesky factors M = L L^T and, with Y = L^-1 A^T, A M^-1 A^T = Y^T Y, in place: nothing is allocated after the
+/// first evaluation. A pivot that is 1e-14 of its diagonal entry, what rounding leaves, counts as zero.
 ///
 /// Structures: M_s qdd_s = N^T F - C qd - K q with their mass matrices factorised once.
 class AccelerationSolver {
@@ -28,13 +30,16 @@ class AccelerationSolver {
   void project_velocities(State& state);
 
  private:
-  void assemble(const State& state);
-  [[noreturn]] void throw_singular(const State& state) const;
+  void factorise(const State& state);
+  void solve_constraints();
+  [[noreturn]] void throw_singular(const State& state);
 
   System& system_;
   std::vector<BandedCholesky> masses_;  // of the structures
-  Eigen::MatrixXd M_, KKT_;
-  Eigen::VectorXd bias_, right_;
+  std::vector<RightHandSides> sides_;   // of theirs
+  Eigen::MatrixXd M_;                   // then L
+  Eigen::MatrixXd Y_, S_;               // Y; Y^T Y, then its factor
+  Eigen::VectorXd bias_, diagonal_, lambda_;
 };
 
 /// Sets state.qdd (and lambda, xd) so that the equations of motion hold.

@@ -139,7 +139,13 @@ void AdaptiveIntegrator::watch(Event event) {
   backend_->watched.push_back(std::move(event));
 }
 
-bool AdaptiveIntegrator::take_step(double t_end) {
+void AdaptiveIntegrator::complete_state() {
+  if (is_complete_) return;
+  backend_->accelerations.solve(state_);
+  is_complete_ = true;
+}
+
+bool AdaptiveIntegrator::take_step(double t_end, bool is_watched) {
   Backend& b = *backend_;
   if (!b.has_started) {
     if (!b.watched.empty()) {
@@ -151,7 +157,9 @@ bool AdaptiveIntegrator::take_step(double t_end) {
   }
   double t = state_.t;
   const int flag = b.one_step(t_end, t);
-  if (b.thrown) std::rethrow_exception(std::exchange(b.thrown, nullptr));
+  const std::exception_ptr thrown = std::exchange(b.thrown, nullptr);
+  if (flag < 0) complete_state();  // the last good one, which the caller may look at
+  if (thrown) std::rethrow_exception(thrown);
   if (flag < 0)
     throw SolverError(
         fmt::format("{}: {} at t = {} s with step {:.3g} s; is the motion smooth, and are the "
@@ -160,8 +168,10 @@ bool AdaptiveIntegrator::take_step(double t_end) {
   b.step_start = t - b.last_step();
   ++b.steps;
   b.unpack(t, b.y, state_);
-  b.accelerations.solve(state_);
-  if (system_.update_charts(state_)) {
+  is_complete_ = false;
+  const bool has_new_chart = system_.update_charts(state_);
+  if (has_new_chart || is_watched || b.is_root(flag) || state_.t >= t_end) complete_state();
+  if (has_new_chart) {
     b.scratch.charts = state_.charts;
     b.pack(state_, b.y);
     b.restart(state_);
@@ -182,13 +192,13 @@ bool AdaptiveIntegrator::take_step(double t_end) {
 }
 
 void AdaptiveIntegrator::step() {
-  take_step(state_.t + 1e6);
+  take_step(state_.t + 1e6, true);
 }
 
 void AdaptiveIntegrator::advance(double t_end, const Watcher& after_each_step) {
   while (state_.t < t_end) {
     backend_->set_stop_time(t_end);
-    const bool stops = take_step(t_end);
+    const bool stops = take_step(t_end, static_cast<bool>(after_each_step));
     if (after_each_step) after_each_step(state_);
     if (stops) return;
   }

@@ -66,8 +66,12 @@ class AdaptiveIntegrator : public Integrator {
   std::unique_ptr<Backend> backend_;
 
  private:
-  bool take_step(double t_end);  // true: an event stops
+  /// Accelerations, rates and constraint forces of the new state are left for later if nobody is going to look at them.
+  /// True: an event stops.
+  bool take_step(double t_end, bool is_watched);
+  void complete_state();
   std::vector<EventRecord> events_;
+  bool is_complete_ = true;  // qdd, xd and lambda belong to the state
 };
 
 /// Explicit Runge-Kutta method of Dormand and Prince, order 5 with an error estimate of order 4 (ARKODE): for smooth

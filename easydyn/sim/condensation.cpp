@@ -52,7 +52,8 @@ bool Condensation::ports_moved(const std::vector<System::PortRecord>& ports) con
   return false;
 }
 
-void Condensation::set_bases(const VectorXd& q_base, double c_q, const VectorXd& qd_base, double c_v) {
+void Condensation::set_bases(const Eigen::Ref<const VectorXd>& q_base, double c_q,
+                             const Eigen::Ref<const VectorXd>& qd_base, double c_v) {
   q_base_ = q_base;
   qd_base_ = qd_base;
   c_q_ = c_q;
@@ -75,12 +76,13 @@ PortMotion Condensation::motion(int structure, const PortShape& shape, const Vec
   return motion;
 }
 
-void Condensation::compute_response(const VectorXd& F, Eigen::Ref<VectorXd> y) const {
+void Condensation::compute_response(const VectorXd& F, Eigen::Ref<VectorXd> y) {
   for (std::size_t k = 0; k < factors_.size(); ++k) {
-    VectorXd weights = VectorXd::Zero(X_[k].cols());
-    weights[0] = 1;
-    for (std::size_t c = 0; c < port_of_[k].size(); ++c) weights[static_cast<int>(c) + 1] = F[port_of_[k][c]];
-    y.segment(offset_[k], factors_[k].size()).noalias() = X_[k] * weights;
+    weights_.setZero(X_[k].cols());
+    weights_[0] = 1;
+    for (std::size_t c = 0; c < port_of_[k].size(); ++c)
+      weights_[static_cast<int>(c) + 1] = F[port_of_[k][c]];
+    y.segment(offset_[k], factors_[k].size()).noalias() = X_[k] * weights_;
   }
 }
 

@@ -29,11 +29,12 @@ class Condensation {
   /// Whether these ports touch elsewhere than those of the last solve(): then G is not theirs.
   bool ports_moved(const std::vector<System::PortRecord>& ports) const;
   /// How y enters coordinates and rates.
-  void set_bases(const Eigen::VectorXd& q_base, double c_q, const Eigen::VectorXd& qd_base, double c_v);
+  void set_bases(const Eigen::Ref<const Eigen::VectorXd>& q_base, double c_q,
+                 const Eigen::Ref<const Eigen::VectorXd>& qd_base, double c_v);
   /// Motion of a port for given port forces F.
   PortMotion motion(int structure, const PortShape& shape, const Eigen::VectorXd& F) const;
   /// y = y_free + G F.
-  void compute_response(const Eigen::VectorXd& F, Eigen::Ref<Eigen::VectorXd> y) const;
+  void compute_response(const Eigen::VectorXd& F, Eigen::Ref<Eigen::VectorXd> y);
 
  private:
   const System& system_;
@@ -42,7 +43,7 @@ class Condensation {
   std::vector<std::vector<int>> port_of_;  // per structure: which port each column belongs to
   std::vector<PortShape> shapes_;          // of the ports, as condensed
   std::vector<int> offset_;                // of each structure among the structure coordinates
-  Eigen::VectorXd q_base_, qd_base_;
+  Eigen::VectorXd q_base_, qd_base_, weights_;
   double c_q_ = 0, c_v_ = 0;
 };
 

@@ -76,15 +76,15 @@ ImplicitStepper::ImplicitStepper(const char* method, const Coefficients& coeffic
   floors_.resize(system_.equation_count() + port_forces_.size());
   floors_.setConstant(force_floor);
   floors_.head(n_bodies_ + n_first_).setConstant(acceleration_floor);
-  scale_ = floors_.cwiseMax(initial_unknowns().cwiseAbs());
+  take_initial_unknowns(z_);
+  scale_ = floors_.cwiseMax(z_.cwiseAbs());
 }
 
 ImplicitStepper::~ImplicitStepper() = default;
 
-VectorXd ImplicitStepper::initial_unknowns() const {
-  VectorXd z(system_.equation_count() + port_forces_.size());
+void ImplicitStepper::take_initial_unknowns(VectorXd& z) const {
+  z.resize(system_.equation_count() + port_forces_.size());
   z << state_.qdd.head(n_bodies_), state_.xd, state_.lambda, port_forces_;
-  return z;
 }
 
 void ImplicitStepper::prepare(double h) {
@@ -107,35 +107,37 @@ void ImplicitStepper::set_unknowns(const VectorXd& z, State& next) {
 }
 
 void ImplicitStepper::evaluate(const VectorXd& z, State& next, VectorXd& residual) {
-  const VectorXd forces = z.tail(port_forces_.size());
+  forces_ = z.tail(port_forces_.size());
   set_unknowns(z, next);
   system_.compute_body_residual(
       System::body_state(next),
-      [&](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces); },
+      [this](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces_); },
       residual.data());
   ++statistics_.evaluations;
-  if (static_cast<int>(system_.ports().size()) != forces.size())
+  if (static_cast<int>(system_.ports().size()) != forces_.size())
     throw ModelError(
         fmt::format("system \"{}\": forces() touched {} ports, {} before; touch the same ports in the "
                     "same order at each evaluation",
-                    system_.name(), system_.ports().size(), forces.size()));
-  for (int p = 0; p < forces.size(); ++p)
-    residual[residual.size() - forces.size() + p] =
-        forces[p] - system_.ports()[static_cast<std::size_t>(p)].force;
+                    system_.name(), system_.ports().size(), forces_.size()));
+  for (int p = 0; p < forces_.size(); ++p)
+    residual[residual.size() - forces_.size() + p] =
+        forces_[p] - system_.ports()[static_cast<std::size_t>(p)].force;
 }
 
-void ImplicitStepper::compute_jacobian(const VectorXd& z, State& next, const VectorXd& residual) {
+// By differences from residual_, at z.
+void ImplicitStepper::compute_jacobian(const VectorXd& z, State& next) {
   const int n = static_cast<int>(z.size());
-  Eigen::MatrixXd J(n, n);
-  VectorXd shifted = z, r(n);
+  differences_.resize(n, n);
+  shifted_residual_.resize(n);
+  shifted_ = z;
   for (int i = 0; i < n; ++i) {
     const double delta = 1e-4 * scale_[i];
-    shifted[i] = z[i] + delta;
-    evaluate(shifted, next, r);
-    J.col(i) = (r - residual) / (shifted[i] - z[i]);
-    shifted[i] = z[i];
+    shifted_[i] = z[i] + delta;
+    evaluate(shifted_, next, shifted_residual_);
+    differences_.col(i) = (shifted_residual_ - residual_) / (shifted_[i] - z[i]);
+    shifted_[i] = z[i];
   }
-  jacobian_.compute(J);
+  jacobian_.compute(differences_);
   jacobian_known_ = true;
   ++statistics_.jacobians;
 }
@@ -147,24 +149,29 @@ bool ImplicitStepper::try_step(double h, State& next) {
   const int n_structures = static_cast<int>(state_.q.size()) - n;
 
   // What is known of the new state before its accelerations.
-  const VectorXd carried = (f * state_.qdd - m * a_) / (1 - m);  // the part of a_1 that is known
-  q_star_ = state_.q + h * state_.qd + h * h * ((0.5 - c_.beta) * a_ + c_.beta * carried);
-  qd_star_ = state_.qd + h * ((1 - c_.gamma) * a_ + c_.gamma * carried);
+  carried_ = (f * state_.qdd - m * a_) / (1 - m);  // the part of a_1 that is known
+  q_star_ = state_.q + h * state_.qd + h * h * ((0.5 - c_.beta) * a_ + c_.beta * carried_);
+  qd_star_ = state_.qd + h * ((1 - c_.gamma) * a_ + c_.gamma * carried_);
   x_star_ = state_.x + h * ((1 - c_.gamma) * w_ + c_.gamma / (1 - m) * (f * state_.xd - m * w_));
   next = state_;
   next.t = state_.t + h;
   next.q = q_star_ + beta_ * h * h * state_.qdd;
   next.qd = qd_star_ + gamma_ * h * state_.qdd;
-  VectorXd z = initial_unknowns(), residual(z.size());
+  VectorXd& z = z_;
+  take_initial_unknowns(z);
+  residual_.resize(z.size());
 
-  VectorXd b(n_structures);
+  VectorXd& b = b_;
+  b.resize(n_structures);
   if (n_structures > 0) {
     // Where are the structures touched at the new time? Then their free motion and port compliances.
     system_.evaluate(next);
     int at = 0;
     for (const auto& s : system_.structures()) {
-      b.segment(at, s->size()).noalias() = -(s->C() * qd_star_.segment(n + at, s->size()));
-      b.segment(at, s->size()).noalias() -= s->K() * q_star_.segment(n + at, s->size());
+      auto b_s = b.segment(at, s->size());
+      b_s.setZero();
+      b_s.noalias() -= s->C() * qd_star_.segment(n + at, s->size());
+      b_s.noalias() -= s->K() * q_star_.segment(n + at, s->size());
       at += s->size();
     }
     condensation_->solve(b, system_.ports());
@@ -175,16 +182,13 @@ bool ImplicitStepper::try_step(double h, State& next) {
   // Newton on accelerations and port forces.
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-    evaluate(z, next, residual);
-    last_residual_ = residual.lpNorm<Eigen::Infinity>();
-    if (!residual.allFinite()) return false;
-    if (!jacobian_known_) {
-      const VectorXd residual_here = residual;
-      compute_jacobian(z, next, residual_here);
-    }
-    const VectorXd correction = jacobian_.solve(residual);
-    z -= correction;
-    const double size = correction.cwiseAbs().cwiseQuotient(scale_).maxCoeff();
+    evaluate(z, next, residual_);
+    last_residual_ = residual_.lpNorm<Eigen::Infinity>();
+    if (!residual_.allFinite()) return false;
+    if (!jacobian_known_) compute_jacobian(z, next);
+    correction_ = jacobian_.solve(residual_);
+    z -= correction_;
+    const double size = correction_.cwiseAbs().cwiseQuotient(scale_).maxCoeff();
     if (!std::isfinite(size)) return false;
     const bool stalled_at_roundoff =
         size < 1e-3 * std::sqrt(options_.newton_tolerance) && size >= 0.5 * previous;
@@ -224,9 +228,9 @@ double ImplicitStepper::local_error(const State& next, double h) const {
 }
 
 void ImplicitStepper::step() {
-  State next;
+  State& next = next_;
   for (;;) {
-    const VectorXd forces_before = port_forces_;
+    forces_before_ = port_forces_;
     const bool converged = try_step(h_, next);
     if (!options_.variable_step) {
       if (!converged)
@@ -253,7 +257,7 @@ void ImplicitStepper::step() {
       return;
     }
     ++statistics_.rejected;
-    port_forces_ = forces_before;
+    port_forces_ = forces_before_;
     h_ *= std::min(factor, 0.5);
     if (h_ < options_.min_step)
       throw SolverError(

@@ -67,13 +67,13 @@ class ImplicitStepper : public Integrator {
   static State consistent_initial_state(System& system);
 
  private:
-  Eigen::VectorXd initial_unknowns() const;
+  void take_initial_unknowns(Eigen::VectorXd& z) const;
   bool try_step(double h, State& next);  // false: Newton did not converge
   void accept(State& next);
   void prepare(double h);
   void set_unknowns(const Eigen::VectorXd& z, State& next);
   void evaluate(const Eigen::VectorXd& z, State& next, Eigen::VectorXd& residual);
-  void compute_jacobian(const Eigen::VectorXd& z, State& next, const Eigen::VectorXd& residual);
+  void compute_jacobian(const Eigen::VectorXd& z, State& next);
   double local_error(const State& next, double h) const;
 
   std::string method_;
@@ -90,6 +90,11 @@ class ImplicitStepper : public Integrator {
   Eigen::VectorXd a_, w_;  // pseudo accelerations of coordinates and pseudo rates of first-order states
   // Magnitudes of the unknowns: those of the last steps, never below the floors; renewed by accepted steps only.
   Eigen::VectorXd floors_, scale_, next_scale_;
+  // Kept from step to step, so that no memory is asked for again.
+  State next_;
+  Eigen::VectorXd z_, residual_, shifted_residual_, shifted_, correction_, carried_, forces_, forces_before_,
+      b_;
+  Eigen::MatrixXd differences_;
   Eigen::PartialPivLU<Eigen::MatrixXd> jacobian_;
   bool jacobian_known_ = false;
   double last_residual_ = 0;

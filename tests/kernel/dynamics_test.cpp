@@ -192,4 +192,69 @@ TEST(Frame, RefusesVelocitiesBeforeTheyAreKnown) {
   EXPECT_THROW(system.evaluate(system.initial_state()), ModelError);
 }
 
+// A trunk with two branches, of rotations about all kinds of axes and of displacements; one motion has a gear. The same
+// motions are written in three ways: with coordinates in the order of the motions, in reverse order, and with a second,
+// vanishing term in each, so that no motion has a gradient of one entry.
+class Branches : public System {
+ public:
+  enum class Writing { in_order, reversed, with_two_terms };
+  explicit Branches(Writing writing) : writing_(writing) {
+    for (int i = 0; i < size_of_tree; ++i) {
+      const int motion = motion_of(i);
+      q_.push_back(coordinate("q" + std::to_string(motion), 0.3 + 0.17 * motion, 0.5 - 0.11 * motion));
+    }
+    for (int i = 0; i < 3; ++i)
+      bodies_.push_back(&body("body " + std::to_string(i), Inertia::box(1 + i, 0.3, 0.4, 0.5)));
+  }
+  /// Coordinate of motion k, and the reverse.
+  int motion_of(int k) const { return writing_ == Writing::reversed ? size_of_tree - 1 - k : k; }
+
+  void positions() override {
+    const auto q = [this](int k) {
+      const Coordinate& own = q_[static_cast<std::size_t>(motion_of(k))];
+      const Coordinate& other = q_[static_cast<std::size_t>(motion_of((k + 3) % size_of_tree))];
+      return writing_ == Writing::with_two_terms ? own + 0 * other : Expr(own);
+    };
+    const Frame trunk = translate(q(0), 0.2, q(1)) * rotate_z(q(2)) * translate(0.3, 0.1, -0.2) *
+                        rotate_y(q(3)) * rotate(Eigen::Vector3d(1, 2, -1), q(4));
+    *bodies_[0] = trunk * translate(0.1, 0, 0);
+    const Frame first = trunk * translate(0, 0.5, 0) * rotate_x(q(5)) * rotate_y(1.5 * q(6)) *
+                        translate(0, 0, -0.4) * rotate_x(q(7)) * rotate_z(q(8)) * translate(0.1, q(9), 0);
+    *bodies_[1] = first * translate(0, 0.1, 0.2);
+    *bodies_[2] = trunk * rotate_z(q(10)) * translate(q(11), 0, 0) * rotate_y(q(12));
+  }
+  void forces() override { gravity(); }
+
+  static constexpr int size_of_tree = 13;
+
+ private:
+  Writing writing_;
+  std::vector<Coordinate> q_;
+  std::vector<Body*> bodies_;
+};
+
+TEST(Dynamics, DoesNotDependOnHowTheMotionsAreWritten) {
+  static constexpr int n = Branches::size_of_tree;
+  const auto mass_and_bias = [](Branches& system) {
+    Eigen::MatrixXd M(n, n), M_by_motion(n, n);
+    VectorXd bias(n), bias_by_motion(n);
+    system.compute_mass_and_bias(system.initial_state(), M, bias);
+    for (int i = 0; i < n; ++i) {
+      bias_by_motion[i] = bias[system.motion_of(i)];
+      for (int j = 0; j < n; ++j) M_by_motion(i, j) = M(system.motion_of(i), system.motion_of(j));
+    }
+    return std::pair(M_by_motion, bias_by_motion);
+  };
+  Branches in_order(Branches::Writing::in_order), reversed(Branches::Writing::reversed),
+      two_terms(Branches::Writing::with_two_terms);
+  const auto [M, bias] = mass_and_bias(in_order);
+  EXPECT_GT(M.norm(), 1);
+  for (Branches* other : {&reversed, &two_terms}) {
+    const auto [M_other, bias_other] = mass_and_bias(*other);
+    // 1e-14: the same products, added in another order
+    EXPECT_LT((M_other - M).norm(), 1e-14 * M.norm());
+    EXPECT_LT((bias_other - bias).norm(), 1e-14 * (1 + bias.norm()));
+  }
+}
+
 }  // namespace
