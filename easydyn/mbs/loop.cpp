@@ -29,10 +29,12 @@ void LoopClosure::set_guess(std::span<const double> guess) {
     if (!std::isfinite(value))
       throw ModelError(fmt::format("loop \"{}\": guess {} must be finite", name_, value));
   p_ = guess_ = VectorXd::Map(guess.data(), n_);
+  orientation_ = 0;
 }
 
 void LoopClosure::begin(double t) {
   t_ = t;
+  start_ = p_;
   phase_ = Phase::newton;
   iterations_ = halvings_ = 0;
   rate_.setZero();
@@ -80,6 +82,17 @@ void LoopClosure::solve_least_squares(VectorXd& right, X&& x) {
   QR.topLeftCorner(rank, rank).triangularView<Eigen::Upper>().solveInPlace(right.head(rank));
   x.setZero();
   for (Eigen::Index k = 0; k < rank; ++k) x[qr_.colsPermutation().indices()[k]] = right[k];
+}
+
+int LoopClosure::compute_orientation() const {
+  if (jacobian_.rows() != n_) return 0;
+  // J P = Q R; each reflection of Q changes the sign, unless it has nothing to do.
+  double sign = static_cast<double>(qr_.colsPermutation().determinant());
+  for (int i = 0; i < n_; ++i) {
+    sign *= qr_.matrixQR()(i, i) < 0 ? -1 : 1;
+    if (qr_.hCoeffs()[i] != 0) sign = -sign;
+  }
+  return sign < 0 ? -1 : 1;
 }
 
 bool LoopClosure::take(std::span<const Expr> equations) {
@@ -132,6 +145,12 @@ bool LoopClosure::take(std::span<const Expr> equations) {
         fmt::format("is singular (rank {} of {}): the mechanism is at a dead point or has more freedom than "
                     "coordinates",
                     qr_.rank(), n_));
+  const int orientation = compute_orientation();
+  if (orientation_ * orientation < 0) {
+    p_ = start_;
+    fail("has passed a dead point or left its branch since the last solution");
+  }
+  orientation_ = orientation;
 
   // Rates, and the gradients in the coordinates: dp/dq = -J^+ dg/dq.
   for (Eigen::Index e = 0; e < m; ++e) right_[e] = -equations[static_cast<std::size_t>(e)].rate();

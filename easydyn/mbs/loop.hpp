@@ -39,15 +39,17 @@ class LoopClosure {
   /// x = J^+ right by the decomposition; `right` is used up.
   template <class X>
   void solve_least_squares(Eigen::VectorXd& right, X&& x);
+  int compute_orientation() const;
   [[noreturn]] void fail(const std::string& what) const;
 
   std::string system_, name_;
   int n_, first_;
   Phase phase_ = Phase::newton;
   int iterations_ = 0, halvings_ = 0;
+  int orientation_ = 0;  // sign of det J on the branch; 0: not yet known, or more equations than unknowns
   double t_ = 0;
   double scale_ = 0, last_norm_ = 0;
-  Eigen::VectorXd guess_, p_, rate_, bias_, step_, residual_, right_;
+  Eigen::VectorXd guess_, start_, p_, rate_, bias_, step_, residual_, right_;
   Eigen::MatrixXd jacobian_, inverse_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
   std::vector<Gradient> gradients_;
@@ -69,10 +71,14 @@ class LoopClosure {
 ///
 ///   J p. = -g.(p. = 0)      J p.. = -g..(p.. = 0)      J dp/dq = -dg/dq      J = dg/dp
 ///
-/// There may be more equations than unknowns if they agree (J is solved by rank-revealing least squares). The
-/// equations may use frames: motions made for them do not stay in the system.
-/// @throws SolverError naming system and loop: singular (rank of J below N), contradictory equations, no
-///         convergence
+/// Branches meet where det J = 0 (a dead point, a flat parallelogram), so that its sign stays the same along a branch. A
+/// solution of the other sign is refused: the motion has passed such a point, or Newton has left the branch.
+/// `set_guess` chooses anew. Two branches of the same sign cannot be told apart: far jumps of q may change them.
+///
+/// There may be more equations than unknowns if they agree (J is solved by rank-revealing least squares; no sign is
+/// watched then). The equations may use frames: motions made for them do not stay in the system.
+/// @throws SolverError naming system and loop: singular (rank of J below N), dead point passed, contradictory
+///         equations, no convergence
 template <int N>
 class Loop {
  public:

@@ -70,6 +70,7 @@ ImplicitStepper::ImplicitStepper(const char* method, const Coefficients& coeffic
   system_.evaluate(state_);
   a_ = state_.qdd;
   w_ = state_.xd;
+  last_change_ = VectorXd::Zero(n_first_);
   port_forces_.resize(static_cast<int>(system_.ports().size()));
   for (int p = 0; p < port_forces_.size(); ++p)
     port_forces_[p] = system_.ports()[static_cast<std::size_t>(p)].force;
@@ -221,9 +222,11 @@ double ImplicitStepper::local_error(const State& next, double h) const {
   const double factor = std::abs(c_.beta - 1.0 / 6 + 0.5 * (c_.alpha_m - c_.alpha_f)) * h * h;
   double error = 0;
   if (next.qdd.size() > 0) error = factor * (next.qdd - state_.qdd).lpNorm<Eigen::Infinity>();
-  // A first-order state errs like a rate, one order of h less.
-  if (next.xd.size() > 0 && last_change_.size() > 0)
-    error = std::max(error, h / 12 * (next.xd - state_.xd - h * last_change_).lpNorm<Eigen::Infinity>());
+  // A first-order state errs like a rate, one order of h less: x... from the change of the change of its rate.
+  if (next.xd.size() > 0) {
+    const double rate_factor = std::abs(1.0 / 12 - (c_.alpha_m - c_.alpha_f) * (0.5 - c_.alpha_f)) * h;
+    error = std::max(error, rate_factor * (next.xd - state_.xd - h * last_change_).lpNorm<Eigen::Infinity>());
+  }
   return error / options_.tolerance;
 }
 

@@ -17,8 +17,8 @@ class Condensation;
 struct StepperOptions {
   double step = 1e-3;          ///< h [s]: the step, or the first one where it varies; > 0
   bool variable_step = false;  ///< choose h from the local error
-  double tolerance =
-      1e-6;  ///< bound of the local error of each coordinate per step [m, rad]; variable step only
+  /// Bound of the local error of each coordinate [m, rad] and first-order state per step; variable step only.
+  double tolerance = 1e-6;
   double min_step = 1e-10;                                    ///< [s]
   double max_step = std::numeric_limits<double>::infinity();  ///< [s]
   double newton_tolerance = 1e-10;  ///< last Newton correction of accelerations and port forces, relative
@@ -41,7 +41,10 @@ struct StepperOptions {
 ///
 /// With a variable step the local error is estimated for each coordinate by
 /// |beta - 1/6 + (alpha_m - alpha_f) / 2| h^2 |qdd_1 - qdd_0| (after Zienkiewicz & Xie, Earthquake Eng. Struct.
-/// Dyn. 20, 1991); `tolerance` bounds it per step: it is not the accuracy of the result after many steps.
+/// Dyn. 20, 1991), for each first-order state from the changes of its rate over this step and the one before, h_0, by
+/// |1/12 - (alpha_m - alpha_f) (1/2 - alpha_f)| h |xd_1 - xd_0 - (h / h_0) (xd_0 - xd_-1)|; in the first step the
+/// earlier change counts as zero, which is too much rather than too little. `tolerance` bounds it per step: it is not
+/// the accuracy of the result after many steps.
 class ImplicitStepper : public Integrator {
  public:
   ~ImplicitStepper() override;

@@ -1,8 +1,11 @@
 // The IFToMM library of computational benchmark problems (Gonzalez et al., Multibody Syst. Dyn. 16, 2006).
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
+#include <Eigen/SVD>
 
 #include "easydyn/easydyn.hpp"
+#include "tests/reference/bricard.hpp"
 
 namespace easydyn {
 namespace {
@@ -57,6 +60,64 @@ TEST(IftommA02, ParallelogramFollowsTheIndependentSolution) {
   // One coordinate, integrated independently to an energy drift of 2e-11.
   EXPECT_NEAR(integrator.state().q[0], -30.1798008601836, 1e-6);
   EXPECT_NEAR(integrator.state().qd[0], -1.50664218082099, 1e-6);
+}
+
+/// A02 with its loops left to Newton: the same mechanism as two rhombi, the second on the first one's rocker.
+TEST(IftommA02, LoopsRefuseTheFlatPositionWhereBranchesMeet) {
+  class Rhombi : public System {
+   public:
+    Coordinate phi = coordinate("phi", M_PI / 2, -1);
+    Loop<2> first = loop<2>("first window", {0, M_PI / 2}), second = loop<2>("second window", {0, M_PI / 2});
+    std::vector<Body*> bars;
+    Rhombi() : System("N-four-bar") {
+      for (int i = 0; i < 5; ++i)
+        bars.push_back(&body("bar " + std::to_string(i), Inertia(1, 0, 1 / 12.0, 1 / 12.0)));
+    }
+
+   protected:
+    void positions() override {
+      const auto close = [](Loop<2>& window, const Expr& crank) {  // angles of coupler and rocker
+        return window.solve([&](const auto& p) {
+          return std::array{cos(crank) + cos(p[0]) - cos(p[1]) - 1, sin(crank) + sin(p[0]) - sin(p[1])};
+        });
+      };
+      const auto [coupler_1, rocker_1] = close(first, phi);
+      const auto [coupler_2, rocker_2] = close(second, rocker_1);
+      *bars[0] = rotate_y(-phi) * translate(0.5, 0, 0);
+      *bars[1] = translate(1, 0, 0) * rotate_y(-rocker_1) * translate(0.5, 0, 0);
+      *bars[2] = translate(2, 0, 0) * rotate_y(-rocker_2) * translate(0.5, 0, 0);
+      *bars[3] = translate(cos(phi), 0, sin(phi)) * rotate_y(-coupler_1) * translate(0.5, 0, 0);
+      *bars[4] = translate(1 + cos(rocker_1), 0, sin(rocker_1)) * rotate_y(-coupler_2) * translate(0.5, 0, 0);
+    }
+    void forces() override { gravity(); }
+  };
+  // At phi = 0 all bars lie on one line: parallelogram and antiparallelogram meet. No step may carry the motion
+  // across unseen; up to there it is that of the parallelogram. (Newmark with 1 ms comes so close that rounding,
+  // multiplied by 1 / phi^3, stops its own iteration first.)
+  const auto refused_at = [](auto make) {
+    Rhombi rhombi;
+    double last = M_PI / 2;
+    EXPECT_THAT(
+        [&] {
+          auto integrator = make(rhombi);
+          integrator.advance(10, [&](const State& s) {
+            last = s.q[0];
+            EXPECT_NEAR(rhombi.first.value(0), 0, 1e-3);  // coupler level: no other branch
+          });
+        },
+        testing::ThrowsMessage<SolverError>(
+            testing::AllOf(testing::HasSubstr("loop \"first window\""), testing::HasSubstr("dead point"))));
+    return last;
+  };
+  const double runge_kutta =
+      refused_at([](System& s) { return RungeKutta(s, {.relative_tolerance = 1e-8}); });
+  EXPECT_GT(runge_kutta, 0);
+  EXPECT_LT(runge_kutta, 0.5);  // a step of Runge-Kutta's before it
+  for (const double step : {0.01, 0.0031}) {
+    const double newmark = refused_at([&](System& s) { return Newmark(s, {.step = step}); });
+    EXPECT_GT(newmark, 0) << step;
+    EXPECT_LT(newmark, 6 * step) << step;  // 4.8 rad/s there: the last step before it
+  }
 }
 
 /// A03: Andrews' squeezing mechanism, seven bodies in three loops; data of the test set for initial value problem
@@ -130,6 +191,146 @@ TEST(IftommA03, AndrewsMechanismReachesThePublishedAngles) {
   EXPECT_NEAR(integrator.state().q[0], published[0], 1e-7);
   for (std::size_t i = 0; i < 6; ++i)
     EXPECT_NEAR(andrews.p[i].value(), published[i + 1], 1e-7) << "angle " << i + 1;
+}
+
+/// A04: Bricard's mechanism, five rods of 1 m and 1 kg on the edges of a cube, the sixth edge is the ground. Each of the
+/// six hinges stands across its two rods. Counted by Gruebler it cannot move; it has one freedom.
+class Bricard : public System {
+ public:
+  Bricard() : System("Bricard") {}
+  Coordinate q = coordinate("q");  // angle in joint 0
+  Loop<5> closing = loop<5>("Bricard", {0, 0, 0, 0, 0});
+  Body& rod_1 = body("rod 1", Inertia(1, 0, 1 / 12.0, 1 / 12.0));
+  Body& rod_2 = body("rod 2", Inertia(1, 1 / 12.0, 0, 1 / 12.0));
+  Body& rod_3 = body("rod 3", Inertia::rod_z(1, 1));
+  Body& rod_4 = body("rod 4", Inertia(1, 0, 1 / 12.0, 1 / 12.0));
+  Body& rod_5 = body("rod 5", Inertia(1, 1 / 12.0, 0, 1 / 12.0));
+  std::vector<Expr> equations;
+  std::array<Expr, 5> angles;
+
+ protected:
+  void positions() override {
+    angles = closing.solve([&](const auto& p) { return equations = equations_of_closure(p); });
+    const Frame f1 = rotate_y(q), f2 = f1 * translate(1, 0, 0) * rotate_z(angles[0]),
+                f3 = f2 * translate(0, -1, 0) * rotate_x(angles[1]),
+                f4 = f3 * translate(0, 0, 1) * rotate_y(angles[2]),
+                f5 = f4 * translate(-1, 0, 0) * rotate_z(angles[3]);
+    rod_1 = f1 * translate(0.5, 0, 0);
+    rod_2 = f2 * translate(0, -0.5, 0);
+    rod_3 = f3 * translate(0, 0, 0.5);
+    rod_4 = f4 * translate(-0.5, 0, 0);
+    rod_5 = f5 * translate(0, 0.5, 0);
+  }
+  void forces() override { gravity(Eigen::Vector3d(0, -9.81, 0)); }
+
+ private:
+  /// Around all six joints back to the ground: the place of joint 5 and the axes after it.
+  std::vector<Expr> equations_of_closure(const std::array<Expr, 5>& p) const {
+    const Frame end = rotate_y(q) * translate(1, 0, 0) * rotate_z(p[0]) * translate(0, -1, 0) *
+                      rotate_x(p[1]) * translate(0, 0, 1) * rotate_y(p[2]) * translate(-1, 0, 0) *
+                      rotate_z(p[3]) * translate(0, 1, 0) * rotate_x(p[4]);
+    const ExprVector place = end.express_point({0, 0, 0});
+    return {place.x(),
+            place.y(),
+            place.z() - 1,
+            end.express_direction({1, 0, 0}).y(),
+            end.express_direction({0, 1, 0}).z(),
+            end.express_direction({0, 0, 1}).x()};
+  }
+};
+
+TEST(IftommA04, BricardsMechanismFollowsItsClosedForm) {
+  Bricard bricard;
+  RungeKutta integrator(bricard, {.relative_tolerance = 1e-10, .absolute_tolerance = 1e-11});
+  reference::Bricard closed_form;
+  double largest = 0, drift = 0, lowest = 0;
+  for (int i = 1; i <= 100; ++i) {
+    for (int k = 0; k < 500; ++k) closed_form.step(2e-4);
+    integrator.advance(0.1 * i);
+    bricard.evaluate(integrator.state());
+    const auto joints = reference::Bricard::joints(closed_form.s);
+    const auto joint = [&](std::size_t k) {
+      return Eigen::Vector3d(joints[k][0].f, joints[k][1].f, joints[k][2].f);
+    };
+    largest = std::max({largest, (bricard.rod_2.point({0, -0.5, 0}) - joint(2)).norm(),
+                        (bricard.rod_4.point({-0.5, 0, 0}) - joint(4)).norm(),
+                        (bricard.rod_5.point({0, 0.5, 0}) - joint(5)).norm()});
+    const EnergyBalance e = bricard.compute_energy(integrator.state());
+    drift = std::max(drift, std::abs(e.kinetic + e.potential + 3 * 9.81));
+    lowest = std::min(lowest, closed_form.s);
+  }
+  EXPECT_LT(lowest, -0.9 * M_PI);  // through the flat position and far beyond it
+  EXPECT_LT(largest, 1e-8);        // measured 1.2e-10; the library allows 1e-3
+  EXPECT_LT(drift, 1e-9 * 34);     // of the potential energy
+}
+
+TEST(IftommA04, SixClosureEquationsHaveRankFive) {
+  constexpr int first_unknown = 1 << 24;  // in gradients, as System numbers them
+  Bricard bricard;
+  State s = bricard.initial_state();
+  for (double q = 0.1; q < 3; q += 0.37) {
+    s.q[0] = q;
+    bricard.evaluate(s);
+    Eigen::Matrix<double, 6, 6> J;  // five unknowns, last the coordinate
+    for (int e = 0; e < 6; ++e) {
+      const Gradient& g = bricard.equations[static_cast<std::size_t>(e)].gradient();
+      for (int i = 0; i < 5; ++i) J(e, i) = g[first_unknown + i];
+      J(e, 5) = g[0];
+    }
+    const Eigen::VectorXd singular = Eigen::JacobiSVD<Eigen::MatrixXd>(J).singularValues();
+    EXPECT_LT(singular[5], 1e-12 * singular[0]) << "q = " << q;  // rounding of the solved angles
+    EXPECT_GT(singular[4], 1e-2 * singular[0]) << "q = " << q;
+  }
+}
+
+/// A05: stiff flyball governor. Two rods with balls hinged 0.05 m beside the axis at the top of a shaft of 1 m; springs
+/// with dampers instead of couplers lead from their middles to the sides of a slider at height s on the shaft.
+class FlyballGovernor : public System {
+ public:
+  Coordinate psi = coordinate("psi", 0, 2 * M_PI), s = coordinate("s", 0.5);
+  Coordinate alpha_1 = coordinate("alpha 1", M_PI / 6), alpha_2 = coordinate("alpha 2", M_PI / 6);
+  static constexpr double density = 3000, bar = density * 1e-4, block = density * 1e-3;
+  Body& shaft = body("shaft", Inertia::box(bar, 0.01, 0.01, 1));
+  Body& slider = body("slider", Inertia::box(block, 0.1, 0.1, 0.1));
+  Body& rod_1 = body("rod 1", Inertia::box(bar, 1, 0.01, 0.01));
+  Body& rod_2 = body("rod 2", Inertia::box(bar, 1, 0.01, 0.01));
+  Body &ball_1 = body("ball 1", 5), &ball_2 = body("ball 2", 5);
+  SpringDamper coupler_1{"coupler 1", 8e5, 4e4, 0.5}, coupler_2{"coupler 2", 8e5, 4e4, 0.5};
+
+ protected:
+  void positions() override {
+    shaft = rotate_z(psi) * translate(0, 0, 0.5);
+    slider = rotate_z(psi) * translate(0, 0, s);
+    rod_1 = rotate_z(psi) * translate(0.05, 0, 1) * rotate_y(alpha_1) * translate(0.5, 0, 0);
+    rod_2 = rotate_z(psi) * translate(-0.05, 0, 1) * rotate_y(-alpha_2) * translate(-0.5, 0, 0);
+    ball_1 = rod_1 * translate(0.5, 0, 0);
+    ball_2 = rod_2 * translate(-0.5, 0, 0);
+  }
+  void forces() override {
+    gravity();
+    coupler_1.apply(slider, {0.05, 0, 0}, rod_1, {0, 0, 0});
+    coupler_2.apply(slider, {-0.05, 0, 0}, rod_2, {0, 0, 0});
+  }
+};
+
+TEST(IftommA05, FlyballGovernorFollowsTheIndependentSolution) {
+  FlyballGovernor governor;
+  // Four coordinates integrated independently to a tolerance of 1e-10: slider, arm, speed of the shaft.
+  const double expected[][4] = {{0.025, 0.501515439622, 0.521799428683, 6.27089506354},
+                                {0.5, 0.743249424786, 0.259491381543, 5.10341542197},
+                                {1, 0.50142092238, 0.521833301626, 6.27112574188},
+                                {5, 0.535563103722, 0.482874576587, 6.02249649976},
+                                {10, 0.619622917061, 0.390073701845, 5.54820362265}};
+  Cvode integrator(governor, {.relative_tolerance = 1e-9, .absolute_tolerance = 1e-10});
+  for (const auto& [t, s, alpha, speed] : expected) {
+    integrator.advance(t);
+    const State& state = integrator.state();
+    // Measured 3e-8, 3e-8 and 2e-7; the library allows 1e-3.
+    EXPECT_NEAR(state.q[1], s, 3e-7) << "t = " << t;
+    EXPECT_NEAR(state.q[2], alpha, 3e-7) << "t = " << t;
+    EXPECT_NEAR(state.qd[0], speed, 2e-6) << "t = " << t;
+    EXPECT_NEAR(state.q[3], state.q[2], 1e-9);  // both arms
+  }
 }
 
 }  // namespace

@@ -137,6 +137,26 @@ TEST(Loop, NamesItselfWhereItIsSingular) {
           AllOf(HasSubstr("loop \"four-bar\" of system \"linkage\" is singular"), HasSubstr("rank 1 of 2"))));
 }
 
+TEST(Loop, RefusesToPassADeadPointUnseen) {
+  // Newton's tangent would step over the flat position without touching it.
+  FourBar parallelogram(1, 1, 1, 1, {0.0, 1.0});
+  State s = parallelogram.initial_state();
+  parallelogram.closing.set_guess({0, 0.01});
+  s.q[0] = 0.01;
+  parallelogram.evaluate(s);
+  s.q[0] = -0.008;
+  EXPECT_THAT([&] { parallelogram.evaluate(s); },
+              ThrowsMessage<SolverError>(
+                  AllOf(HasSubstr("loop \"four-bar\" of system \"linkage\" has passed a dead point"))));
+  s.q[0] = 0.01;  // the refused solution has left no trace
+  parallelogram.evaluate(s);
+  EXPECT_NEAR(parallelogram.solution[1].value(), 0.01, 1e-12);
+  parallelogram.closing.set_guess({0, -0.008});  // the user knows how it goes on
+  s.q[0] = -0.008;
+  parallelogram.evaluate(s);
+  EXPECT_NEAR(parallelogram.solution[1].value(), -0.008, 1e-12);
+}
+
 TEST(Loop, NamesItselfWhereItCannotBeClosed) {
   FourBar torn(0.4, 0.5, 0.3, 3.0, {0.3, 1.5});
   EXPECT_THAT(

@@ -51,6 +51,59 @@ inline Jet sin(const Jet& a) {
 inline Jet cos(const Jet& a) {
   return Jet::chain(a, std::cos(a.f), -std::sin(a.f), -std::cos(a.f));
 }
+inline Jet exp(const Jet& a) {
+  return Jet::chain(a, std::exp(a.f), std::exp(a.f), std::exp(a.f));
+}
+inline Jet sqrt(const Jet& a) {
+  const double r = std::sqrt(a.f);
+  return Jet::chain(a, r, 0.5 / r, -0.25 / (r * a.f));
+}
+inline Jet operator/(const Jet& a, const Jet& b) {
+  const double r = 1 / b.f;
+  return a * Jet::chain(b, r, -r * r, 2 * r * r * r);
+}
+
+/// p(z) that solves g(p, z) = 0, with gradient and Hessian in z: Newton on the values, then g differentiated twice,
+///
+///   G_p P = -G_z        G_p P_ab = -[1 P]^T H [1 P]_ab
+///
+/// with the Jacobian (G_p, G_z) and the Hessians H of g in (p, z).
+/// @param g  called with p and z as variables of one Taylor arithmetic of size N + m; as many equations as unknowns
+template <class Equations>
+std::vector<Jet> solve_implicit(const Equations& g, Eigen::VectorXd p, const Eigen::VectorXd& z) {
+  const int N = static_cast<int>(p.size()), m = static_cast<int>(z.size());
+  const auto equations = [&] {
+    std::vector<Jet> P, Z;
+    for (int i = 0; i < N; ++i) P.push_back(Jet::variable(N + m, i, p[i]));
+    for (int i = 0; i < m; ++i) Z.push_back(Jet::variable(N + m, N + i, z[i]));
+    return g(P, Z);
+  };
+  std::vector<Jet> e;
+  Eigen::MatrixXd G(N, N + m);
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    e = equations();
+    Eigen::VectorXd residual(N);
+    for (int i = 0; i < N; ++i) {
+      residual[i] = e[static_cast<std::size_t>(i)].f;
+      G.row(i) = e[static_cast<std::size_t>(i)].g.transpose();
+    }
+    const Eigen::VectorXd step = G.leftCols(N).fullPivLu().solve(residual);
+    if (step.norm() < 1e-15 * (1 + p.norm())) break;
+    p -= step;
+  }
+  const Eigen::FullPivLU<Eigen::MatrixXd> lu(G.leftCols(N));
+  const Eigen::MatrixXd P = -lu.solve(G.rightCols(m));
+  Eigen::MatrixXd along(N + m, m);
+  along << P, Eigen::MatrixXd::Identity(m, m);
+  std::vector<Jet> solution;
+  for (int k = 0; k < N; ++k) solution.push_back({p[k], P.row(k).transpose(), Eigen::MatrixXd::Zero(m, m)});
+  const Eigen::MatrixXd inverse = lu.inverse();
+  for (int i = 0; i < N; ++i) {
+    const Eigen::MatrixXd curvature = along.transpose() * e[static_cast<std::size_t>(i)].H * along;
+    for (int k = 0; k < N; ++k) solution[static_cast<std::size_t>(k)].H -= inverse(k, i) * curvature;
+  }
+  return solution;
+}
 
 /// Pose with Taylor entries: R row by row, p.
 struct JetPose {
@@ -72,6 +125,13 @@ struct JetPose {
       T.R[i][b] = R[i][b] * C + R[i][c] * S;
       T.R[i][c] = R[i][c] * C - R[i][b] * S;
     }
+    return T;
+  }
+  /// Followed by a constant rotation.
+  JetPose turned(const Eigen::Matrix3d& C) const {
+    JetPose T = *this;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) T.R[i][j] = C(0, j) * R[i][0] + C(1, j) * R[i][1] + C(2, j) * R[i][2];
     return T;
   }
   JetPose translated(const Jet& x, const Jet& y, const Jet& z) const {
