@@ -361,7 +361,8 @@ class Reader {
 UrdfModel read_urdf(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::ostringstream text;
-  if (!(stream && text << stream.rdbuf())) throw InputError(fmt::format("{}: empty or cannot be read", file.string()));
+  if (!(stream && text << stream.rdbuf()))
+    throw InputError(fmt::format("{}: empty or cannot be read", file.string()));
   return urdf_from_text(text.str(), file);
 }
 

@@ -47,7 +47,7 @@ std::filesystem::path find_mesh(std::string name, const std::filesystem::path& u
   }
   name.erase(0, 10);
   for (; !folder.empty(); folder = folder.parent_path()) {
-    if (const fs::path path = folder / name; fs::is_regular_file(path, ignored)) return path;
+    if (fs::path path = folder / name; fs::is_regular_file(path, ignored)) return path;
     if (folder == folder.root_path()) break;
   }
   return {};

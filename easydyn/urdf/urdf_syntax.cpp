@@ -20,7 +20,7 @@ struct Content {
   int numbers = 0;  // 0: text
   enum Range { any, not_negative, positive, not_zero, unit } range = any;
 };
-constexpr Content text{}, number{1}, not_negative{1, Content::not_negative}, positive{1, Content::positive};
+constexpr Content words{}, number{1}, not_negative{1, Content::not_negative}, positive{1, Content::positive};
 constexpr Content vector3{3}, size3{3, Content::positive}, scale3{3, Content::not_zero},
     colour{4, Content::unit};
 
@@ -54,22 +54,22 @@ const Element inertial{"inertial", {}, {{&origin}, {&mass, Count::once}, {&inert
 const Element box{"box", {{"size", size3}}};
 const Element cylinder{"cylinder", {{"radius", positive}, {"length", positive}}};
 const Element sphere{"sphere", {{"radius", positive}}};
-const Element mesh{"mesh", {{"filename", text}, {"scale", scale3, false}}};
+const Element mesh{"mesh", {{"filename", words}, {"scale", scale3, false}}};
 const Element geometry{"geometry", {}, {{&box}, {&cylinder}, {&sphere}, {&mesh}}};
 const Element rgba{"color", {{"rgba", colour}}};
-const Element texture{"texture", {{"filename", text}}};
-const Element material{"material", {{"name", text}}, {{&rgba}, {&texture}}};
+const Element texture{"texture", {{"filename", words}}};
+const Element material{"material", {{"name", words}}, {{&rgba}, {&texture}}};
 const Element visual{"visual",
-                     {{"name", text, false}, {"group", text, false}},
+                     {{"name", words, false}, {"group", words, false}},
                      {{&origin}, {&geometry, Count::once}, {&material}}};
 const Element collision{.name = "collision", .is_free = true};
 const Element contact{.name = "contact", .is_free = true};
 const Element link{"link",
-                   {{"name", text}, {"type", text, false}},
+                   {{"name", words}, {"type", words, false}},
                    {{&inertial}, {&visual, Count::any}, {&collision, Count::any}, {&contact}}};
 
-const Element parent{"parent", {{"link", text}}};
-const Element child{"child", {{"link", text}}};
+const Element parent{"parent", {{"link", words}}};
+const Element child{"child", {{"link", words}}};
 const Element axis{"axis", {{"xyz", vector3}}};
 const Element limit{"limit",
                     {{"lower", number, false},
@@ -77,11 +77,11 @@ const Element limit{"limit",
                      {"effort", not_negative},
                      {"velocity", not_negative}}};
 const Element dynamics{"dynamics", {{"damping", not_negative, false}, {"friction", not_negative, false}}};
-const Element mimic{"mimic", {{"joint", text}, {"multiplier", number, false}, {"offset", number, false}}};
+const Element mimic{"mimic", {{"joint", words}, {"multiplier", number, false}, {"offset", number, false}}};
 const Element calibration{.name = "calibration", .is_free = true};
 const Element safety{.name = "safety_controller", .is_free = true};
 const Element joint{"joint",
-                    {{"name", text}, {"type", text}},
+                    {{"name", words}, {"type", words}},
                     {{&origin},
                      {&parent, Count::once},
                      {&child, Count::once},
@@ -93,7 +93,7 @@ const Element joint{"joint",
                      {&safety}}};
 
 std::string accepted_range(const Content& content) {
-  const std::string each = content.numbers > 1 ? fmt::format("{} numbers", content.numbers) : "a number";
+  std::string each = content.numbers > 1 ? fmt::format("{} numbers", content.numbers) : "a number";
   switch (content.range) {
     case Content::not_negative:
       return each + " >= 0";
@@ -146,6 +146,7 @@ bool fits(std::string_view value, const Content& content) {
 template <class List, class Name>
 std::string list_of(const List& list, Name name) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& entry : list) names.push_back(name(entry));
   return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
