@@ -53,12 +53,12 @@ FreeMotion::FreeMotion(System& system, const std::string& name, const Vector3d& 
       system_(&system),
       chart_(chart) {}
 
-Frame FreeMotion::frame() const {
+Frame FreeMotion::frame(const Frame& parent) const {
   if (!system_->chart_pointer_)
     throw ModelError("a free motion has a frame in positions() and forces() only");
   const Eigen::AngleAxisd chart(system_->chart_pointer_[chart_]);
-  return translate(x, y, z) * Motion::rotation(chart.axis(), chart.angle()) * rotate_x(a) * rotate_y(b) *
-         rotate_z(c);
+  return parent * translate(x, y, z) * Motion::rotation(chart.axis(), chart.angle()) * rotate_x(a) *
+         rotate_y(b) * rotate_z(c);
 }
 
 FreeMotion System::free_motion(const std::string& name, const Vector3d& origin, const Matrix3d& orientation) {

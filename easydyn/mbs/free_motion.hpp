@@ -21,11 +21,12 @@ namespace easydyn {
 ///     void positions() override { satellite = motion.frame(); }
 class FreeMotion {
  public:
-  Coordinate x, y, z;  ///< of the origin, world axes [m]
+  Coordinate x, y,
+      z;  ///< of the origin, in the axes of the frame that the motion starts from: the ground's [m]
   Coordinate a, b, c;  ///< [rad]
 
-  /// The frame; in positions() only.
-  Frame frame() const;
+  /// The frame; in positions() only. With a parent, all six coordinates count from that frame, which may move.
+  Frame frame(const Frame& parent = {}) const;
 
  private:
   friend class System;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -16,7 +17,7 @@ namespace {
 using json::Value;
 
 constexpr const char* format_name = "easydyn-scene-1";
-constexpr std::array<const char*, 4> shape_names = {"box", "cylinder", "wheel", "sphere"};
+constexpr std::array<const char*, 5> shape_names = {"box", "cylinder", "wheel", "sphere", "mesh"};
 constexpr std::array<const char*, 2> link_names = {"line", "spring"};
 
 template <typename Enum, size_t n>
@@ -63,13 +64,12 @@ Value to_value(const MovingFrame& frame) {
 }
 
 Value to_value(const Item& item) {
-  return json::object({{"name", item.name},
-                       {"frame", item.frame},
-                       {"shape", shape_names[size_t(item.shape)]},
-                       {"size", numbers(item.size)},
-                       {"colour", item.colour},
-                       {"offset", to_value(item.offset)},
-                       {"opacity", item.opacity}});
+  Value::Object object = {
+      {"name", item.name},          {"frame", item.frame},   {"shape", shape_names[size_t(item.shape)]},
+      {"size", numbers(item.size)}, {"colour", item.colour}, {"offset", to_value(item.offset)},
+      {"opacity", item.opacity}};
+  if (item.shape == Shape::mesh) object.emplace_back("triangles", json::base64(item.triangles));
+  return object;
 }
 
 Value to_value(const Link& link) {
@@ -142,7 +142,9 @@ Item item(const Value& value) {
           vector3(value.at("size")),
           value.at("colour").string(),
           pose(value.at("offset")),
-          value.at("opacity").number()};
+          value.at("opacity").number(),
+          value.has("triangles") ? json::floats_from_base64(value.at("triangles").string())
+                                 : std::vector<float>()};
 }
 
 Link link(const Value& value) {
@@ -235,9 +237,15 @@ void check(const Scene& scene) {
   };
   for (const Item& i : scene.items) {
     require_frame(fmt::format("item \"{}\"", i.name), i.frame);
-    const int used = i.shape == Shape::box ? 3 : i.shape == Shape::sphere ? 1 : 2;
+    const bool is_mesh = i.shape == Shape::mesh;
+    const int used = is_mesh ? 0 : i.shape == Shape::box ? 3 : i.shape == Shape::sphere ? 1 : 2;
     require((i.size.head(used).array() > 0).all(),
             fmt::format("scene: item \"{}\" has a size that is not > 0", i.name));
+    require(is_mesh ? !i.triangles.empty() && i.triangles.size() % 9 == 0 : i.triangles.empty(),
+            fmt::format("scene: item \"{}\" has {} numbers for triangles, must be {}", i.name,
+                        i.triangles.size(), is_mesh ? "9, 18, 27, ..." : "0: it is no mesh"));
+    require(std::all_of(i.triangles.begin(), i.triangles.end(), [](float x) { return std::isfinite(x); }),
+            fmt::format("scene: item \"{}\" has a triangle that is not finite", i.name));
     require(i.opacity > 0 && i.opacity <= 1,
             fmt::format("scene: item \"{}\": opacity = {}, must be in (0, 1]", i.name, i.opacity));
     require(is_finite(i.offset), fmt::format("scene: item \"{}\": its offset is not finite", i.name));

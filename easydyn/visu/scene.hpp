@@ -25,7 +25,7 @@ struct MovingFrame {
   std::optional<Pose> rest = {};
 };
 
-enum class Shape { box, cylinder, wheel, sphere };
+enum class Shape { box, cylinder, wheel, sphere, mesh };
 
 /// A rigid body's look, fixed in a moving frame or in the ground.
 struct Item {
@@ -33,10 +33,13 @@ struct Item {
   std::string frame;  ///< name of the frame that carries it; empty: the ground
   Shape shape = Shape::box;
   Eigen::Vector3d size{1, 1, 1};  ///< box: lengths along x, y, z; cylinder and wheel: radius, length along
-                                  ///< the axis y, unused; sphere: radius, unused, unused [m]
+                                  ///< the axis y, unused; sphere: radius, unused, unused [m];
+                                  ///< mesh: unused
   std::string colour = "#4477aa";
   Pose offset = {};    ///< of the item in its frame
   double opacity = 1;  ///< 0 < opacity <= 1
+  /// Of a mesh: x y z of the three corners of each triangle, counterclockwise seen from outside [m].
+  std::vector<float> triangles = {};
 };
 
 /// A point fixed in a moving frame (empty name: the ground).

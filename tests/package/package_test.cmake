@@ -35,6 +35,7 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${SCRATCH}/build -G Ninja -DCMAKE_PREFIX_PA
 run(${CMAKE_COMMAND} --build ${SCRATCH}/build)
 run(${SCRATCH}/build/double_pendulum)
 run(${SCRATCH}/build/first)
+run(${SCRATCH}/build/robot)
 run(${SCRATCH}/build/result_file ${SCRATCH}/numbers.h5)
 
 # Nothing outside include/easydyn-2, and no private header.

@@ -33,6 +33,11 @@ function itemMesh(item) {
   const [a, b, c] = item.size;
   const skin = material(item.colour, item.opacity);
   if (item.shape === 'box') return withEdges(new Mesh(new BoxGeometry(a, b, c), skin), item.colour);
+  if (item.shape === 'mesh') {
+    const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(floats(item.triangles), 3));
+    geometry.computeVertexNormals();
+    return withEdges(new Mesh(geometry, skin), item.colour);
+  }
   if (item.shape === 'sphere') return new Mesh(new SphereGeometry(a, 32, 20), skin);
   const round = withEdges(new Mesh(new CylinderGeometry(a, a, b, 48), skin), item.colour);
   if (item.shape === 'wheel') {  // spokes, so that it is seen to turn
@@ -47,6 +52,16 @@ function itemMesh(item) {
     round.add(new LineSegments(geometry, new LineBasicMaterial({ color: 0xffffff })));
   }
   return round;
+}
+
+// Largest distance of a point of the item from the origin of its axes, about.
+function itemReach(item) {
+  if (item.shape === 'box') return 0.5 * Math.hypot(...item.size);
+  if (item.shape !== 'mesh') return Math.max(...item.size.slice(0, item.shape === 'sphere' ? 1 : 2));
+  const p = floats(item.triangles);
+  let r = 0;
+  for (let i = 0; i < p.length; i += 3) r = Math.max(r, Math.hypot(p[i], p[i + 1], p[i + 2]));
+  return r;
 }
 
 // A helix of unit length along z with straight ends.
@@ -199,7 +214,7 @@ class Picture {
     };
     const reach = new Map();  // of the items around the origin of their frame
     for (const item of data.items) {
-      const r = item.shape === 'box' ? 0.5 * Math.hypot(...item.size) : Math.max(...item.size.slice(0, item.shape === 'sphere' ? 1 : 2));
+      const r = itemReach(item);
       const [x, y, z] = item.offset;
       if (!item.frame) include(x, y, z, r);
       reach.set(item.frame, Math.max(reach.get(item.frame) || 0, Math.hypot(x, y, z) + r));
