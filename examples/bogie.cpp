@@ -9,7 +9,12 @@
 // Shows: imposed motion as an expression of time; steady vibration beside the closed form. L = 4 a: pitch alone; L = 2 a:
 // bounce alone.
 // Run: ./run bogie
-// Prints: energy error ... J
+// Prints: bounce 4.3586 Hz, closed form 4.3586 Hz
+// Prints: pitch  5.6270 Hz, closed form 5.6270 Hz
+// Prints: wavelength 2.5 m: bounce 2.596 mm, pitch 0.000 mrad; closed form 2.596 mm, 0.000 mrad
+// Prints: wavelength 5 m: bounce 0.000 mm, pitch 6.691 mrad; closed form 0.000 mm, 6.690 mrad
+// Prints: largest difference from the closed form 9.3e-05 of the profile
+// Prints: energy error 9.8e-02 J
 // Next: segway.cpp (feedback)
 // Reference: K. Knothe, S. Stichel, Rail Vehicle Dynamics, Springer, 2017, doi:10.1007/978-3-319-45376-7, ch. 5.
 
@@ -90,44 +95,33 @@ Amplitudes simulate(Bogie& bogie, Recorder& recorder) {
   return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2};
 }
 
-// 6. The look: heights ten times too large, the way to scale.
+// 6. The look: heights ten times too large.
 visu::Scene draw(const Recorder& recorder, double wavelength) {
+  using enum visu::Shape;
   visu::Scene scene = recorder.scene();
   scene.exaggeration = 10;
+  const double rest_height[] = {z_frame, wheel_radius, wheel_radius};
+  for (std::size_t b = 0; b < 3; ++b) scene.frames[b].rest = visu::Pose{{0, 0, rest_height[b]}};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(601, 4 * v - 6, 5 * v + 6);
   const Eigen::VectorXd profile = height * (2 * pi / wavelength * x).array().cos();
-  scene.lines = {{.name = "rail",
-                  .x = x,
-                  .deflection = profile.transpose().replicate(scene.time.size(), 1),
-                  .y = 0.75,
-                  .width = 0.05},
-                 {.name = "rail",
-                  .x = x,
-                  .deflection = profile.transpose().replicate(scene.time.size(), 1),
-                  .y = -0.75,
-                  .width = 0.05}};
-  const double rest_height[] = {z_frame, wheel_radius, wheel_radius};
-  using enum visu::Shape;
-  for (std::size_t b = 0; b < 3; ++b) {
-    scene.frames[b].rest = visu::Pose{{0, 0, rest_height[b]}};
-    const std::string& name = scene.frames[b].name;
-    for (const double side : {-1., 1.}) {
-      if (b == 0) {
-        scene.items.push_back({"beam", name, box, {3.2, 0.12, 0.18}, "#4477aa", {{0, side, 0.12}}});
-        continue;
-      }
+  scene.items = {{"transom", "frame", box, {0.4, 2, 0.16}, "#4477aa", {{0, 0, 0.12}}}};
+  for (const double side : {-1., 1.}) {
+    scene.lines.push_back(
+        {"rail", x, profile.transpose().replicate(scene.time.size(), 1), 0.75 * side, 0, 0.05});
+    scene.items.push_back({"beam", "frame", box, {3.2, 0.12, 0.18}, "#4477aa", {{0, side, 0.12}}});
+    for (const std::string name : {"front wheelset", "rear wheelset"}) {
+      const double place = name == "front wheelset" ? a : -a;
       scene.items.push_back(
           {"wheel", name, cylinder, {wheel_radius, 0.12, 1}, "#555555", {{0, 0.75 * side, 0}}});
+      scene.items.push_back({"axle", name, cylinder, {0.08, 1.05, 1}, "#777777", {{0, 0.525 * side, 0}}});
       scene.links.push_back({"primary",
                              {name, {0, side, 0}},
-                             {"frame", {b == 1 ? a : -a, side, 0.05}},
+                             {"frame", {place, side, 0.05}},
                              visu::LinkShape::spring,
                              0.07,
                              "#bb5566"});
     }
-    if (b > 0) scene.items.push_back({"axle", name, cylinder, {0.08, 2.1, 1}, "#777777"});
   }
-  scene.items.push_back({"transom", "frame", box, {0.4, 2, 0.16}, "#4477aa", {{0, 0, 0.12}}});
   scene.camera = {.target = {0, 0, 0.5}, .width = 7, .azimuth = -70, .elevation = 12, .follow = "frame"};
   return scene;
 }
@@ -169,16 +163,15 @@ int main() try {
 
   // 9. Report.
   report.add_chart(
-      {.title = "Steady amplitude over amplitude of the profile",
-       .x = {"wavelength", "m"},
-       .y = {"amplitude", ""},
-       .series = {
-           {"bounce", lengths, bounce, visu::Stroke::points, "#4477aa"},
-           {"pitch, times a", lengths, pitch, visu::Stroke::points, "#bb5566"},
-           {"bounce, closed form", fine, fine.unaryExpr([](double L) { return exact(L).bounce / height; }),
-            visu::Stroke::line, "#4477aa"},
-           {"pitch, closed form", fine, fine.unaryExpr([](double L) { return a * exact(L).pitch / height; }),
-            visu::Stroke::line, "#bb5566"}}});
+      {"Steady amplitude over amplitude of the profile",
+       {"wavelength", "m"},
+       {"amplitude", ""},
+       {{"bounce", lengths, bounce, visu::Stroke::points, "#4477aa"},
+        {"pitch, times a", lengths, pitch, visu::Stroke::points, "#bb5566"},
+        {"bounce, closed form", fine, fine.unaryExpr([](double L) { return exact(L).bounce / height; }),
+         visu::Stroke::line, "#4477aa"},
+        {"pitch, closed form", fine, fine.unaryExpr([](double L) { return a * exact(L).pitch / height; }),
+         visu::Stroke::line, "#bb5566"}}});
   report.write("bogie.html");
   fmt::print("wrote bogie.html\n");
 } catch (const std::exception& e) {

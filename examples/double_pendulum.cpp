@@ -10,10 +10,10 @@
 // the user's choice. Newmark's method is of second order: half the step, a quarter of the energy error. The motion is
 // chaotic: a small difference grows until nothing can be predicted.
 // Run: ./run double_pendulum
-// Prints: step 2 ms: energy drift ...
-// Prints: step 1 ms: energy drift ...
-// Prints: relative and absolute angles agree within 1e-9 m over 10 s: yes
-// Prints: 1e-9 rad more at the start grows ... times in 10 s
+// Prints: step 1   ms: energy drift 9.3e-05 of weight times length
+// Prints: step 0.5 ms: energy drift 2.2e-05 of weight times length
+// Prints: relative and absolute angles: the same tip within 1e-9 m for 3 s: yes
+// Prints: a start 1e-9 rad away: tip 7e-02 m away after 10 s
 // Next: spinning_top.cpp (three rotations in space)
 // Reference: T. Shinbrot et al., Chaos in a double pendulum, Am. J. Phys. 60, 1992, doi:10.1119/1.16860.
 
@@ -106,14 +106,14 @@ int main() try {
                  {"rod 2", "rod 2", box, {0.05, 0.05, length_2}, "#bb5566"},
                  {"bearing", "", cylinder, {0.05, 0.16, 1}, "#333333"},
                  {"elbow", "rod 1", cylinder, {0.04, 0.12, 1}, "#333333", {{0, 0, -length_1 / 2}}}};
-  for (int i = 0; i <= 500; i += 2)
-    scene.items.push_back({"path", "", sphere, {0.01, 1, 1}, "#bb5566", {path.col(i)}});
+  for (int i = 0; i <= 500; ++i)
+    scene.items.push_back({"path", "", sphere, {0.008, 1, 1}, "#bb5566", {path.col(i)}});
   scene.camera = {.target = {0, 0, -0.1}, .width = 8, .azimuth = -80, .elevation = 6};
-  visu::Chart apart{.title = "Two motions that should be one",
-                    .x = {"time", "s"},
-                    .y = {"distance of the tips", "m", visu::Scale::logarithmic},
-                    .series = {{"start 1e-9 rad away", fine.time(), growth},
-                               {"absolute angles: rounding", fine.time(), rounding}}};
+  visu::Chart apart{
+      "Two motions that should be one",
+      {"time", "s"},
+      {"distance of the tips", "m", visu::Scale::logarithmic},
+      {{"start 1e-9 rad away", fine.time(), growth}, {"absolute angles: rounding", fine.time(), rounding}}};
   visu::write_animation_page("double_pendulum.html", "Double pendulum", scene,
                              {fine.coordinate_chart("rad"), fine.energy_chart(), apart},
                              "Two rods in a vertical plane, let go from rest; the dots are the path of the "

@@ -8,7 +8,10 @@
 //
 // Shows: Loop<2> with equations given by frames; reactions in a closed loop, beside Newton's law.
 // Run: ./run four_bar
-// Prints: energy error ... J
+// Prints: rocker swings 72.182 to 137.364 deg, law of cosines 72.182 to 137.364 deg
+// Prints: largest force in bearing A 340.64 N, weight of all bars 40.22 N
+// Prints: Newton's law of the crank holds within 1e-9 N: yes
+// Prints: energy error 5.2e-04 J
 // Next: andrews.cpp (three loops)
 // Reference: J. J. Uicker et al., Theory of Machines and Mechanisms, 4th ed., 2011, ch. 1 and 14.
 
@@ -25,7 +28,7 @@ using namespace easydyn::units;
 
 // 1. Data: homogeneous bars [m, kg].
 constexpr double AB = 0.15, BC = 0.40, CD = 0.32, AD = 0.36;
-constexpr double mass_AB = 1.2, mass_BC = 1.6, mass_CD = 1.3, width = 0.03;
+constexpr double mass_AB = 1.2, mass_BC = 1.6, mass_CD = 1.3, width = 0.03, g = 9.81;
 
 class FourBar : public System {
   Loop<2> closing = loop<2>("four-bar", {-0.3, 1.5});
@@ -57,7 +60,7 @@ class FourBar : public System {
   }
 
   // 3. Forces.
-  void forces() override { gravity(); }
+  void forces() override { gravity(g); }
 };
 
 int main() try {
@@ -85,7 +88,7 @@ int main() try {
     system.compute_reactions(state);
     const Eigen::Vector3d F_A = system.bearing_A.force();                                // ground on crank
     const Eigen::Vector3d F_B = system.crank.frame().rotation() * system.pin_B.force();  // crank on coupler
-    const Eigen::Vector3d weight(0, 0, -9.81 * mass_AB);
+    const Eigen::Vector3d weight(0, 0, -g * mass_AB);
     misfit = std::max(misfit, (F_A - F_B + weight - mass_AB * system.crank.acceleration()).norm());
     times.push_back(state.t);
     forces.push_back(F_A.norm());
@@ -95,7 +98,7 @@ int main() try {
   const Eigen::VectorXd time = Eigen::VectorXd::Map(times.data(), Eigen::Index(times.size()));
   const Eigen::VectorXd force = Eigen::VectorXd::Map(forces.data(), time.size());
   fmt::print("largest force in bearing A {:.2f} N, weight of all bars {:.2f} N\n", force.maxCoeff(),
-             9.81 * (mass_AB + mass_BC + mass_CD));
+             g * (mass_AB + mass_BC + mass_CD));
   fmt::print("Newton's law of the crank holds within 1e-9 N: {}\n",
              misfit < 1e-9 ? "yes" : fmt::format("no, {:.1e}", misfit));
   const Eigen::VectorXd energy = recorder.total_energy();
@@ -119,8 +122,7 @@ int main() try {
     scene.items.push_back({"curve", "", sphere, {0.0025, 1, 1}, "#bb5566", {system.coupler.position()}});
   }
   scene.camera = {.target = {0.17, 0, 0.09}, .width = 1.2, .azimuth = -75, .elevation = 10};
-  const visu::Chart bearing{
-      .title = "Bearing A", .x = {"time", "s"}, .y = {"force", "N"}, .series = {{"force", time, force}}};
+  const visu::Chart bearing{"Bearing A", {"time", "s"}, {"force", "N"}, {{"force", time, force}}};
   visu::write_animation_page(
       "four_bar.html", "Four-bar", scene, {bearing, recorder.energy_chart()},
       "A crank-rocker under its own weight; the dots are the curve of the middle of the coupler.");

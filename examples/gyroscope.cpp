@@ -8,7 +8,11 @@
 //
 // Shows: a coordinate given in time, and the moment that drives it; small motions about a state that is not at rest.
 // Run: ./run gyroscope
-// Prints: energy error ... J
+// Prints: steady precession    0.88290 rad/s, closed form 0.88290 rad/s
+// Prints: nutation             7.158 Hz, closed form 7.158 Hz
+// Prints: deepest dip          -2.660 deg, small-angle form -2.661 deg
+// Prints: motor moment up to   0.0048 N m
+// Prints: energy error         2.1e-08 J
 // Next: slider_crank.cpp (a closed loop)
 // Reference: K. Magnus, Kreisel, Springer, 1971, ch. 3.
 
@@ -112,12 +116,10 @@ int main() try {
       {"axle", "inner ring", cylinder, {0.003, a + arm, 1}, "#333333", {{0, (arm - a) / 2, 0}}});
   scene.items.push_back({"rotor", "rotor", wheel, {0.06, 0.025, 1}, "#4477aa"});
   scene.items.push_back({"weight", "weight", sphere, {0.015, 1, 1}, "#333333"});
-  scene.camera = {.target = {0, 0, 0}, .width = 0.7, .azimuth = 50, .elevation = 15};
+  scene.camera = {.target = {0, 0, 0}, .width = 0.7, .azimuth = 100, .elevation = 15};
   const auto chart = [&](const char* title, const char* name, int i) {
-    return visu::Chart{.title = title,
-                       .x = {"time", "s"},
-                       .y = {name, "deg"},
-                       .series = {{name, recorder.time(), recorder.coordinate(i) / deg}}};
+    return visu::Chart{
+        title, {"time", "s"}, {name, "deg"}, {{name, recorder.time(), recorder.coordinate(i) / deg}}};
   };
   visu::write_animation_page(
       "gyroscope.html", "Gyroscope", scene,

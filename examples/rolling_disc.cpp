@@ -8,7 +8,11 @@
 //
 // Shows: velocity constraints (five coordinates, three velocities); linearisation along them.
 // Run: ./run rolling_disc
-// Prints: energy error ... J
+// Prints: radius of the circle 1.1434 m, closed form 1.1434 m
+// Prints: after one turn within 1e-5 m of the start, the lean within 1e-6 rad: yes
+// Prints: at 0.8 of the critical speed 0.9905 m/s: lean ~ exp((3.069 + 0.000 i) t), closed form (3.069 + 0.000 i)
+// Prints: at 1.2 of the critical speed 0.9905 m/s: lean ~ exp((0.000 + 3.393 i) t), closed form (0.000 + 3.393 i)
+// Prints: energy error 5.1e-05 J
 // Next: quarter_car.cpp (modes and frequency response)
 // Reference: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems, AMS, 1972, ch. 2.
 
@@ -62,12 +66,12 @@ double steady_spin(double lean, double turn) {
   return -turn * s + (A * turn * turn * s * c - mass * g * r * s) / ((C + mass * r * r) * turn * c);
 }
 
-// Of the small motions about upright rolling, the eigenvalue with the largest real part.
-std::complex<double> least_stable(Disc& disc, double speed) {
+// Of the small motions about upright rolling, the eigenvalue that is not zero: a growth, or a frequency.
+std::complex<double> lean_pole(Disc& disc, double speed) {
   const Eigen::VectorXcd poles = linearize_state_space(disc, disc.start(0, 0, speed / r)).A.eigenvalues();
-  Eigen::Index worst = 0;
-  poles.real().maxCoeff(&worst);
-  return poles[worst];
+  Eigen::Index largest = 0;
+  (poles.real() + poles.imag()).maxCoeff(&largest);
+  return poles[largest];
 }
 
 int main() try {
@@ -82,16 +86,19 @@ int main() try {
   });
   fmt::print("radius of the circle {:.4f} m, closed form {:.4f} m\n", -least_y / 2,
              r * spin / std::abs(turn));
-  fmt::print("after one turn {:.1e} m from the start, lean within {:.1e} rad\n",
-             circle.state().q.head(2).norm(), wobble);
+  fmt::print("after one turn within 1e-5 m of the start, the lean within 1e-6 rad: {}\n",
+             circle.state().q.head(2).norm() < 1e-5 && wobble < 1e-6 ? "yes" : "no");
 
   // 6. Upright rolling: (A + m r^2) theta.. = (m g r - C (C + m r^2) (v / r)^2 / A) theta.
   const double critical = r * std::sqrt(A * mass * g * r / (C * (C + mass * r * r)));
   for (const double ratio : {0.8, 1.2}) {
     const double square = mass * g * r * (1 - ratio * ratio) / (A + mass * r * r);
-    const std::complex<double> pole = least_stable(disc, ratio * critical);
-    fmt::print("{:.1f} of the critical speed {:.4f} m/s: pole {:.4f} {:+.4f} i, closed form {:.4f} 1/s\n",
-               ratio, critical, pole.real(), pole.imag(), std::sqrt(std::abs(square)));
+    const std::complex<double> pole = lean_pole(disc, ratio * critical);
+    const std::complex<double> closed_form = std::sqrt(std::complex<double>(square));
+    fmt::print(
+        "at {:.1f} of the critical speed {:.4f} m/s: lean ~ exp(({:.3f} + {:.3f} i) t), closed form ({:.3f} "
+        "+ {:.3f} i)\n",
+        ratio, critical, pole.real(), pole.imag(), closed_form.real(), closed_form.imag());
   }
 
   // 7. For the page: more lean than the circle needs.
@@ -108,11 +115,9 @@ int main() try {
   for (Eigen::Index i = 0; i < x.size(); i += 2)
     scene.items.push_back({"track", "", visu::Shape::sphere, {0.008, 1, 1}, "#bb5566", {{x[i], y[i], 0}}});
   scene.ground = 0;
-  scene.camera = {.target = {0, -1.1, 0.15}, .width = 4.4, .azimuth = -60, .elevation = 22};
-  const visu::Chart lean_chart{.title = "Lean",
-                               .x = {"time", "s"},
-                               .y = {"theta", "deg"},
-                               .series = {{"lean", recorder.time(), recorder.coordinate(3) / deg}}};
+  scene.camera = {.target = {0, -1.1, 0.15}, .width = 3.3, .azimuth = -60, .elevation = 22};
+  const visu::Chart lean_chart{
+      "Lean", {"time", "s"}, {"theta", "deg"}, {{"lean", recorder.time(), recorder.coordinate(3) / deg}}};
   visu::write_animation_page(
       "rolling_disc.html", "Rolling disc", scene, {lean_chart, recorder.energy_chart()},
       "The disc leans more than its circle needs, and nods while it rolls; red: track of the contact.");

@@ -9,7 +9,10 @@
 // Shows: rolling in independent coordinates; A and B from the kernel; a controller inside forces(). The unstable pole is
 // w^2 = m g l m_x / (m_x m_t - m^2 l^2); the controller first drives backwards to go forwards.
 // Run: ./run segway
-// Prints: energy error ... J
+// Prints: unstable pole 5.35844 1/s, closed form 5.35844 1/s
+// Prints: poles with feedback: (-4.500, 0.000) (-4.000, 0.000) (-1.000, 1.000) (-1.000, -1.000)
+// Prints: backwards first by 0.150 m, lean up to 11.95 deg, after 8 s at 1.999 m
+// Prints: energy error 3.8e-04 J
 // Next: robot_arm.cpp (a mechanism from a file)
 // Reference: K. J. Astrom, R. M. Murray, Feedback Systems, Princeton, 2008, ch. 6 (Ackermann's formula).
 
@@ -73,7 +76,7 @@ int main() try {
   fmt::print("poles with feedback:");
   for (const std::complex<double> pole :
        linearize_state_space(segway, segway.initial_state()).A.eigenvalues())
-    fmt::print(" {:.4f}{:+.4f}i", pole.real(), pole.imag());
+    fmt::print(" ({:.3f}, {:.3f})", pole.real(), pole.imag());
   fmt::print("\n");
 
   // 6. Integration: two metres forwards.
@@ -107,14 +110,12 @@ int main() try {
   scene.ground = 0;
   scene.camera = {.target = {1, 0, 0.9}, .width = 5.5, .azimuth = -70, .elevation = 8};
   const auto chart = [&](const char* title, int i, double unit, const char* name) {
-    return visu::Chart{.title = title,
-                       .x = {"time", "s"},
-                       .y = {title, name},
-                       .series = {{title, recorder.time(), recorder.coordinate(i) / unit}}};
+    return visu::Chart{
+        title, {"time", "s"}, {title, name}, {{title, recorder.time(), recorder.coordinate(i) / unit}}};
   };
   visu::write_animation_page(
       "segway.html", "Segway", scene,
-      {chart("way", 0, 1, "m"), chart("lean", 1, deg, "deg"), recorder.energy_chart()},
+      {chart("Way", 0, 1, "m"), chart("Lean", 1, deg, "deg"), recorder.energy_chart()},
       "Two metres forwards: the wheels first run backwards, so that the rider falls forwards.");
   fmt::print("wrote segway.html\n");
 } catch (const std::exception& e) {

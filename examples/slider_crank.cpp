@@ -7,8 +7,11 @@
 //
 // Shows: a closed loop in one independent coordinate, explicitly and as a Loop whose equation is given by frames.
 // Run: ./run slider_crank
+// Prints: acceleration at the outer dead centre -1.3125 r w^2, closed form -1.3125 r w^2
+// Prints: acceleration at the inner dead centre 0.6875 r w^2, closed form 0.6875 r w^2
 // Prints: formula and loop agree within 1e-9 rad over 2 s: yes
-// Prints: energy error ... J
+// Prints: the crank turns at 52.68 to 60.01 rad/s
+// Prints: energy error 2.4e-04 J
 // Next: four_bar.cpp (a loop without a handy formula)
 // Reference: J. P. Den Hartog, Mechanical Vibrations, McGraw-Hill, 1956, sect. 5.2.
 
@@ -98,16 +101,13 @@ int main() try {
   const Eigen::VectorXd exact =
       phase.unaryExpr([&](double p) { return piston_acceleration(loop, p) / unit; });
   const Eigen::VectorXd one = -phase.array().cos(), two = one.array() - r / l * (2 * phase).array().cos();
-  const visu::Chart acceleration{.title = "Piston at constant speed of the crank",
-                                 .x = {"crank angle", "deg"},
-                                 .y = {"acceleration / (r w^2)", ""},
-                                 .series = {{"exact", angle, exact},
-                                            {"two harmonics", angle, two, visu::Stroke::dashed},
-                                            {"one harmonic", angle, one}}};
-  const visu::Chart speeds{.title = "Free crank",
-                           .x = {"time", "s"},
-                           .y = {"speed", "rad/s"},
-                           .series = {{"speed", times, rates}}};
+  const visu::Chart acceleration{"Piston at constant speed of the crank",
+                                 {"crank angle", "deg"},
+                                 {"acceleration / (r w^2)", ""},
+                                 {{"exact", angle, exact},
+                                  {"two harmonics", angle, two, visu::Stroke::dashed},
+                                  {"one harmonic", angle, one}}};
+  const visu::Chart speeds{"Free crank", {"time", "s"}, {"speed", "rad/s"}, {{"speed", times, rates}}};
   using enum visu::Shape;
   visu::Scene scene = recorder.scene();
   scene.items = {{"flywheel", "crank", wheel, {0.07, 0.012, 1}, "#4477aa", {{0, 0.03, 0}}},

@@ -7,7 +7,12 @@
 //
 // Shows: three rotations one after another; conserved quantities; a motion that no small-angle formula covers.
 // Run: ./run spinning_top
-// Prints: energy error ... J
+// Prints: steady precession    2.8587 rad/s, closed form 2.8587 rad/s
+// Prints: tilt stays within    1e-6 rad: yes
+// Prints: nutation down to     33.4022 deg, closed form   33.4022 deg
+// Prints: period of nutation   0.13055 s, closed form     0.13055 s
+// Prints: mean precession      2.853 rad/s, fast top      2.725 rad/s
+// Prints: energy error         2.3e-08 J
 // Next: gyroscope.cpp (gimbals and a motor)
 // Reference: H. Goldstein, Classical Mechanics, 3rd ed., 2002, sect. 5.7.
 
@@ -107,10 +112,8 @@ int main() try {
   scene.ground = 0;
   scene.camera = {.target = {0, 0, 0.045}, .width = 0.36, .azimuth = -60, .elevation = 25};
   const auto chart = [&](const char* title, const char* name, int i) {
-    return visu::Chart{.title = title,
-                       .x = {"time", "s"},
-                       .y = {name, "deg"},
-                       .series = {{name, recorder.time(), recorder.coordinate(i) / deg}}};
+    return visu::Chart{
+        title, {"time", "s"}, {name, "deg"}, {{name, recorder.time(), recorder.coordinate(i) / deg}}};
   };
   visu::write_animation_page(
       "spinning_top.html", "Spinning top", scene,
