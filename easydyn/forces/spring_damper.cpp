@@ -1,9 +1,7 @@
 #include "easydyn/forces/spring_damper.hpp"
 
-#include <fmt/format.h>
-
-#include "easydyn/error.hpp"
-#include "easydyn/mbs/motion_tree.hpp"
+#include "easydyn/forces/account.hpp"
+#include "easydyn/forces/line_of_action.hpp"
 #include "easydyn/require.hpp"
 
 namespace easydyn {
@@ -18,25 +16,22 @@ SpringDamper::SpringDamper(std::string name, double stiffness, double damping, d
   require_not_negative(object, "free length", free_length, "m");
 }
 
+SpringDamper& SpringDamper::set_stops(const Stops& stops) {
+  stops.check("spring \"" + name_ + "\"", "m");
+  stops_ = stops;
+  return *this;
+}
+
 void SpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, const Frame& frame_B,
                          const Vector3d& p_B) {
-  const Vector3d p_0A = frame_A.point(p_A), p_0B = frame_B.point(p_B);
-  const Vector3d p_AB = p_0B - p_0A;
-  length_ = p_AB.norm();
-  if (!(length_ > 0)) throw ModelError(fmt::format("spring \"{}\": its ends coincide, no direction", name_));
-
-  const Vector3d e = p_AB / length_;
-  const double rate = e.dot(frame_B.velocity_at(p_0B) - frame_A.velocity_at(p_0A));
-  force_ = stiffness_ * (length_ - free_length_) + damping_ * rate;
-  frame_A.add_force(force_ * e, p_0A);
-  frame_B.add_force(-force_ * e, p_0B);
-
-  MotionTree* tree = frame_A.tree() ? frame_A.tree() : frame_B.tree();
-  if (tree) {
-    const double stretch = length_ - free_length_;
-    tree->energy().potential += 0.5 * stiffness_ * stretch * stretch;
-    tree->energy().dissipated += damping_ * rate * rate;
-  }
+  const LineOfAction line("spring", name_, frame_A, p_A, frame_B, p_B);
+  length_ = line.length;
+  const double stretch = line.length - free_length_;
+  const Stops::Force stop = stops_ ? stops_->compute_force(line.length, line.rate) : Stops::Force{};
+  force_ = stiffness_ * stretch + damping_ * line.rate - stop.force;
+  line.pull(force_);
+  account(frame_A, frame_B, 0.5 * stiffness_ * stretch * stretch + stop.potential,
+          damping_ * line.rate * line.rate + stop.dissipated);
 }
 
 }  // namespace easydyn

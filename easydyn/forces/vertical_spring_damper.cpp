@@ -1,11 +1,6 @@
 #include "easydyn/forces/vertical_spring_damper.hpp"
 
-#include <fmt/format.h>
-
-#include <cmath>
-
-#include "easydyn/error.hpp"
-#include "easydyn/mbs/motion_tree.hpp"
+#include "easydyn/forces/account.hpp"
 #include "easydyn/require.hpp"
 
 namespace easydyn {
@@ -31,11 +26,8 @@ void VerticalSpringDamper::apply(const Frame& frame_A, const Vector3d& p_A, cons
   frame_A.add_force({0, 0, -force_}, p_0A);
   frame_B.add_force({0, 0, force_}, p_0B);
 
-  MotionTree* tree = frame_A.tree() ? frame_A.tree() : frame_B.tree();
-  if (tree) {
-    tree->energy().potential += 0.5 * stiffness_ * extension_ * extension_ - preload_ * extension_;
-    tree->energy().dissipated += damping_ * rate * rate;
-  }
+  account(frame_A, frame_B, 0.5 * stiffness_ * extension_ * extension_ - preload_ * extension_,
+          damping_ * rate * rate);
 }
 
 }  // namespace easydyn

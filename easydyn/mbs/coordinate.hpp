@@ -28,6 +28,10 @@ class Coordinate {
   /// Where it stands in State::q. @throws ModelError if it is held
   int index() const;
 
+  /// Adds the generalised force Q [N, N m] that works on this coordinate, in System::forces(). Its energy is the
+  /// caller's to account for. @throws ModelError outside forces()
+  void add_force(double Q) const;
+
   void lock(double value);                                        ///< holds it at a value
   void prescribe(std::function<ImposedMotion(double t)> motion);  ///< moves it as given
   void release();                                                 ///< makes it free again
@@ -80,6 +84,22 @@ class Input {
  private:
   friend class System;
   Input(System& system, int index) : system_(&system), index_(index) {}
+  System* system_;
+  int index_;
+};
+
+/// A number that the system gives to the outside: a sensor, a measured force. forces() sets it at each evaluation;
+/// `linearize_state_space` gives the matrices of what it sees. Made by `System::output`.
+class Output {
+ public:
+  /// @throws ModelError outside forces()
+  void set(double value) const;
+  double value() const;  ///< at the last evaluation
+  int index() const { return index_; }
+
+ private:
+  friend class System;
+  Output(System& system, int index) : system_(&system), index_(index) {}
   System* system_;
   int index_;
 };

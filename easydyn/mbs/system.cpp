@@ -34,6 +34,11 @@ int Coordinate::index() const {
   return c.slot;
 }
 
+void Coordinate::add_force(double Q) const {
+  if (!system_->in_forces_) throw ModelError("a generalised force is added inside forces() only");
+  system_->generalized_forces_.push_back({system_->data_of(*this).slot, Q});
+}
+
 void Coordinate::lock(double value) {
   if (!std::isfinite(value))
     throw ModelError(
@@ -73,6 +78,15 @@ double Input::value() const {
 
 void Input::set(double value) const {
   system_->set_input(index_, value);
+}
+
+void Output::set(double value) const {
+  if (!system_->in_forces_) throw ModelError("an output is set inside forces() only");
+  system_->outputs_[static_cast<std::size_t>(index_)].value = value;
+}
+
+double Output::value() const {
+  return system_->output_value(index_);
 }
 
 Frame Reaction::cut(const Frame& frame) const {
@@ -143,6 +157,11 @@ Input System::input(std::string name, double value) {
   const Input input(*this, input_size() - 1);
   input.set(value);
   return input;
+}
+
+Output System::output(std::string name) {
+  outputs_.push_back({std::move(name), 0});
+  return Output(*this, output_size() - 1);
 }
 
 void System::set_input(int i, double value) {
@@ -263,6 +282,7 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
 
   // Velocities, then the user's forces, which may use them.
   tree_.compute_velocities();
+  generalized_forces_.clear();
   std::fill(rates_.begin(), rates_.end(), 0.0);
   in_forces_ = true;
   forces();
@@ -293,6 +313,7 @@ void System::compute_body_residual(const BodyState& state, const PortMotionFunct
   double drive_power = 0;
   tree_.add_residual(has_held ? qd_all_.data() : state.qd, all, &drive_power);
   tree_.energy().supplied += drive_power;
+  subtract_generalized_forces(all);
 
   double* rest = r + body_size();
   for (int i = 0; i < first_order_size(); ++i)
@@ -407,13 +428,19 @@ void System::compute_mass_and_bias(const State& state, Eigen::Ref<MatrixXd> M, E
   if (slot_count_ > free_count_) {
     std::fill(r_all_.begin(), r_all_.end(), 0.0);
     tree_.add_residual(qd_all_.data(), r_all_.data(), nullptr);
+    subtract_generalized_forces(r_all_.data());
     bias = VectorXd::Map(r_all_.data(), body_size());
   } else {
     bias.setZero();
     tree_.add_residual(state.qd.data(), bias.data(), nullptr);
+    subtract_generalized_forces(bias.data());
   }
   M.setZero();
   add_body_mass_matrix(M);
+}
+
+void System::subtract_generalized_forces(double* r) const {
+  for (const GeneralizedForce& f : generalized_forces_) r[f.slot] -= f.Q;
 }
 
 void System::add_body_mass_matrix(Eigen::Ref<MatrixXd> M) {

@@ -52,6 +52,7 @@ class System {
   VelocityConstraint& velocity_constraint(std::string name);
   FirstOrderState first_order_state(std::string name, double initial = 0);
   Input input(std::string name, double value = 0);
+  Output output(std::string name);
   Reaction reaction(std::string name);
   /// Declares the motion of a free body with its origin and orientation at the start.
   FreeMotion free_motion(const std::string& name, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
@@ -85,6 +86,10 @@ class System {
   double input_value(int i) const { return inputs_[static_cast<std::size_t>(i)].value; }
   void set_input(int i, double value);  ///< @throws ModelError if the value is not finite
   int input_size() const { return static_cast<int>(inputs_.size()); }
+  const std::string& output_name(int i) const { return outputs_[static_cast<std::size_t>(i)].name; }
+  /// At the last evaluation.
+  double output_value(int i) const { return outputs_[static_cast<std::size_t>(i)].value; }
+  int output_size() const { return static_cast<int>(outputs_.size()); }
   const std::vector<std::unique_ptr<LinearStructure>>& structures() const { return structures_; }
   int structure_offset(int k) const;  ///< index of the first coordinate of structure k in q
 
@@ -164,6 +169,7 @@ class System {
   friend class Coordinate;
   friend class FirstOrderState;
   friend class FreeMotion;
+  friend class Output;
   friend class Reaction;
   friend class Port;
   struct CoordinateData {
@@ -192,13 +198,19 @@ class System {
   PortMotionFunction motion_of(const State& state) const;
   void check_size(const State& state) const;
   void add_body_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
+  void subtract_generalized_forces(double* r) const;
   std::shared_ptr<LoopClosure> add_loop(std::string name, std::span<const double> guess);
 
   std::string name_;
   std::vector<CoordinateData> coordinates_;
   std::vector<int> free_;  // numbers of the free coordinates, by slot
   int free_count_ = 0, slot_count_ = 0;
-  std::vector<NamedValue> first_order_, inputs_;
+  std::vector<NamedValue> first_order_, inputs_, outputs_;
+  struct GeneralizedForce {
+    int slot;
+    double Q;
+  };
+  std::vector<GeneralizedForce> generalized_forces_;  // of the present evaluation
   std::deque<VelocityConstraint> constraints_;
   std::vector<ReactionData> reactions_;
   std::vector<FreeMotion> free_motions_;

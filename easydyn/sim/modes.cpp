@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "easydyn/error.hpp"
+#include "easydyn/sim/state_space.hpp"
 
 namespace easydyn {
 
@@ -16,14 +17,42 @@ namespace {
 constexpr double two_pi = 2 * std::numbers::pi;
 
 Mode make_mode(std::complex<double> pole, VectorXcd shape) {
+  const double w = std::abs(pole);
+  if (shape.size() == 0) return {pole, w / two_pi, w > 0 ? -pole.real() / w : 0.0, shape};
   Eigen::Index largest = 0;
   shape.cwiseAbs().maxCoeff(&largest);
-  shape /= shape[largest];
-  const double w = std::abs(pole);
+  // Eigenvectors have unit length: what is left of the coordinates in an electrical mode is rounding.
+  if (std::abs(shape[largest]) > 1e-12) {
+    shape /= shape[largest];
+  } else {
+    shape.setZero();
+  }
   return {pole, w / two_pi, w > 0 ? -pole.real() / w : 0.0, std::move(shape)};
 }
 
+// One mode per pair of complex eigenvalues, one per real one; the first n entries are the coordinates.
+std::vector<Mode> modes_of(const MatrixXd& A, Eigen::Index n) {
+  const Eigen::EigenSolver<MatrixXd> eigen(A);
+  if (eigen.info() != Eigen::Success) throw SolverError("modes: the eigenvalue iteration did not converge");
+  std::vector<Mode> modes;
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    if (eigen.eigenvalues()[i].imag() >= 0)
+      modes.push_back(make_mode(eigen.eigenvalues()[i], eigen.eigenvectors().col(i).head(n)));
+  return modes;
+}
+
+void sort_by_frequency(std::vector<Mode>& modes) {
+  std::stable_sort(modes.begin(), modes.end(),
+                   [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+}
+
 }  // namespace
+
+std::vector<Mode> compute_modes(const StateSpace& space) {
+  std::vector<Mode> modes = modes_of(space.A, space.coordinates);
+  sort_by_frequency(modes);
+  return modes;
+}
 
 std::vector<Mode> compute_modes(const Linearization& lin) {
   const Eigen::Index n = lin.M.rows();
@@ -48,14 +77,9 @@ std::vector<Mode> compute_modes(const Linearization& lin) {
     A.topRightCorner(n, n).setIdentity();
     A.bottomLeftCorner(n, n) = -M.solve(lin.K);
     A.bottomRightCorner(n, n) = -M.solve(lin.C);
-    const Eigen::EigenSolver<MatrixXd> eigen(A);
-    if (eigen.info() != Eigen::Success) throw SolverError("modes: the eigenvalue iteration did not converge");
-    for (Eigen::Index i = 0; i < 2 * n; ++i)
-      if (eigen.eigenvalues()[i].imag() >= 0)
-        modes.push_back(make_mode(eigen.eigenvalues()[i], eigen.eigenvectors().col(i).head(n)));
+    modes = modes_of(A, n);
   }
-  std::stable_sort(modes.begin(), modes.end(),
-                   [](const Mode& a, const Mode& b) { return a.frequency < b.frequency; });
+  sort_by_frequency(modes);
   return modes;
 }
 

@@ -17,13 +17,17 @@ using Eigen::VectorXd;
 StateSpace linearize_state_space(System& system, const State& state, double difference) {
   if (!(difference > 0))
     throw ModelError(fmt::format("linearization: difference = {}, must be > 0", difference));
-  const int n = system.size(), nx = system.first_order_size(), nu = system.input_size();
+  const int n = system.size(), nx = system.first_order_size(), nu = system.input_size(),
+            nz = system.output_size(), ny = 2 * n + nx;
   AccelerationSolver solver(system);
   State shifted = state;
+  // Rates of y, with the outputs below.
   const auto rates = [&]() -> VectorXd {
     solver.solve(shifted);
-    VectorXd y(2 * n + nx);
-    y << shifted.qd, shifted.qdd, shifted.xd;
+    VectorXd y(ny + nz);
+    y.head(ny) << shifted.qd, shifted.qdd, shifted.xd;
+    if (nz > 0) system.evaluate(shifted);
+    for (int i = 0; i < nz; ++i) y[ny + i] = system.output_value(i);
     return y;
   };
   // (f(-2d) - 8 f(-d) + 8 f(d) - f(2d)) / 12 d
@@ -36,18 +40,24 @@ StateSpace linearize_state_space(System& system, const State& state, double diff
     set(0.0);
     return sum / (12 * difference);
   };
-  StateSpace space{MatrixXd(2 * n + nx, 2 * n + nx), MatrixXd(2 * n + nx, nu), n};
+  MatrixXd by_y(ny + nz, ny), by_u(ny + nz, nu);
   for (int i = 0; i < n; ++i) {
-    space.A.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; });
-    space.A.col(n + i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; });
+    by_y.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; });
+    by_y.col(n + i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; });
   }
   for (int i = 0; i < nx; ++i)
-    space.A.col(2 * n + i) = derivative([&](double d) { shifted.x[i] = state.x[i] + d; });
+    by_y.col(2 * n + i) = derivative([&](double d) { shifted.x[i] = state.x[i] + d; });
   for (int i = 0; i < nu; ++i) {
     const double value = system.input_value(i);
-    space.B.col(i) = derivative([&](double d) { system.set_input(i, value + d); });
+    by_u.col(i) = derivative([&](double d) { system.set_input(i, value + d); });
     system.set_input(i, value);
   }
+  StateSpace space;
+  space.A = by_y.topRows(ny);
+  space.B = by_u.topRows(ny);
+  space.C = by_y.bottomRows(nz);
+  space.D = by_u.bottomRows(nz);
+  space.coordinates = n;
   return space;
 }
 

@@ -39,6 +39,65 @@ TEST(StateSpace, HoldsCoordinatesFirstOrderStatesAndInputs) {
   EXPECT_EQ(motor.voltage.value(), 0);
 }
 
+TEST(StateSpace, GivesTheModesOfCoordinatesAndFirstOrderStatesTogether) {
+  Motor motor;
+  const StateSpace space = linearize_state_space(motor, motor.initial_state());
+  const std::vector<Mode> modes = compute_modes(space);
+  // (L s + R)(J s^2 + c) + k^2 s = 0: one real pole (electrical), one pair (the spring, damped by the current)
+  ASSERT_EQ(modes.size(), 2u);
+  for (const Mode& m : modes) {
+    const std::complex<double> s = m.pole;
+    EXPECT_LT(std::abs((Motor::L * s + Motor::R) * (Motor::J * s * s + Motor::c) + Motor::k * Motor::k * s),
+              1e-8 * Motor::R * Motor::c);
+    EXPECT_NEAR(std::abs(m.shape[0]), 1, 1e-12);
+  }
+}
+
+TEST(StateSpace, SeesItsOutputs) {
+  class Sensor : public Motor {
+   public:
+    Output speed = output("speed"), power = output("power");
+
+   protected:
+    void forces() override {
+      Motor::forces();
+      speed.set(3 * angle.rate());
+      power.set(2 * voltage.value() + 5 * current.value() + angle.value());
+    }
+  } motor;
+  const StateSpace space = linearize_state_space(motor, motor.initial_state());
+  EXPECT_LT((space.C - Eigen::MatrixXd{{0, 3, 0}, {1, 0, 5}}).norm(), 1e-10);
+  EXPECT_LT((space.D - Eigen::MatrixXd{{0, 0}, {2, 0}}).norm(), 1e-10);
+  EXPECT_EQ(motor.output_name(1), "power");
+  EXPECT_THROW(motor.speed.set(1), ModelError);
+}
+
+TEST(Coordinate, TakesAGeneralisedForceOfTheUsers) {
+  class Slider : public System {
+   public:
+    Coordinate x = coordinate("x", 0.2), y = coordinate("y");
+    Body& mass = body("mass", 2.0);
+
+   protected:
+    void positions() override { mass = translate(x, y, 0); }
+    void forces() override {
+      x.add_force(-50 * x.value());
+      y.add_force(7);
+    }
+  } slider;
+  const State s = slider.initial_state();
+  EXPECT_NEAR(slider.compute_residual(s)[0], 10, 1e-13);
+  Eigen::MatrixXd M(2, 2);
+  Eigen::VectorXd bias(2);
+  slider.compute_mass_and_bias(s, M, bias);
+  EXPECT_NEAR(bias[0], 10, 1e-13);
+  EXPECT_NEAR(bias[1], -7, 1e-13);
+  slider.y.lock(0);  // its force goes to what holds it
+  slider.evaluate(slider.initial_state());
+  EXPECT_NEAR(slider.holding_force(slider.y), -7, 1e-13);
+  EXPECT_THROW(slider.x.add_force(1), ModelError);
+}
+
 TEST(FrequencyResponse, IsThatOfTheClosedForm) {
   Motor motor;
   const StateSpace space = linearize_state_space(motor, motor.initial_state());
@@ -54,7 +113,11 @@ TEST(FrequencyResponse, IsThatOfTheClosedForm) {
 }
 
 TEST(FrequencyResponse, RefusesTheFrequencyOfAnUndampedMode) {
-  const StateSpace oscillator{Eigen::Matrix2d{{0, 1}, {-4 * M_PI * M_PI, 0}}, Eigen::Vector2d(0, 1), 1};
+  const StateSpace oscillator{.A = Eigen::Matrix2d{{0, 1}, {-4 * M_PI * M_PI, 0}},
+                              .B = Eigen::Vector2d(0, 1),
+                              .C = Eigen::MatrixXd(0, 2),
+                              .D = Eigen::MatrixXd(0, 1),
+                              .coordinates = 1};
   EXPECT_THROW(compute_frequency_response(oscillator, Eigen::VectorXd::Constant(1, 1.0)), SolverError);
   EXPECT_THROW(compute_frequency_response(oscillator, Eigen::VectorXd::Constant(1, -1.0)), ModelError);
 }
