@@ -6,8 +6,8 @@
 //     ~~~~~~~~~~~~~~~~~~~~~~~~~     r(x) = h cos(2 pi x / L)
 //         |<---- 2 a ---->|   --> v
 //
-// Shows: imposed motion as an expression of time; steady vibration beside the closed form. L = 4 a: pitch alone; L = 2 a:
-// bounce alone.
+// Shows: imposed motion as an expression of time; steady vibration beside the closed form.
+// L = 4 a: pitch alone; L = 2 a: bounce alone.
 // Run: ./run bogie
 // Prints: bounce 4.3586 Hz, closed form 4.3586 Hz
 // Prints: pitch  5.6270 Hz, closed form 5.6270 Hz
@@ -16,7 +16,7 @@
 // Prints: largest difference from the closed form 9.3e-05 of the profile
 // Prints: energy error 9.8e-02 J
 // Next: segway.cpp (feedback)
-// Reference: K. Knothe, S. Stichel, Rail Vehicle Dynamics, Springer, 2017, doi:10.1007/978-3-319-45376-7, ch. 5.
+// Reference: K. Knothe, S. Stichel, Rail Vehicle Dynamics, Springer, 2017, doi:10.1007/978-3-319-45376-7.
 
 #include <fmt/format.h>
 
@@ -72,8 +72,8 @@ struct Amplitudes {
   double bounce, pitch;
 };
 
-// 4. Closed form: the mean of the two wheels drives the bounce, their difference the pitch; each is one mass on the
-// springs, moved at its foot at w = 2 pi v / L.
+// 4. Closed form: the mean of the two wheels drives the bounce, their difference the pitch; each is one mass
+// on the springs, moved at its foot at w = 2 pi v / L.
 Amplitudes exact(double wavelength) {
   const double w = 2 * pi * v / wavelength, phase = 2 * pi * a / wavelength;
   const std::complex<double> foot(2 * k, 2 * d * w);
@@ -151,7 +151,7 @@ int main() try {
     worst =
         std::max({worst, std::abs(s.bounce - e.bounce) / height, a * std::abs(s.pitch - e.pitch) / height});
     energy_error = std::max(energy_error, (energy.array() - energy[0]).abs().maxCoeff());
-    if (lengths[i] == 2 * a || lengths[i] == 4 * a) {
+    if (std::abs(lengths[i] - 2 * a) < 1e-9 || std::abs(lengths[i] - 4 * a) < 1e-9) {
       fmt::print("wavelength {} m: bounce {:.3f} mm, pitch {:.3f} mrad; closed form {:.3f} mm, {:.3f} mrad\n",
                  lengths[i], s.bounce / mm, s.pitch / 1e-3, e.bounce / mm, e.pitch / 1e-3);
       report.add_animation(draw(recorder, lengths[i]),

@@ -6,9 +6,9 @@
 //         x          b  angle of rod 2: from rod 1 (relative) or from the vertical (absolute)
 //         |  rod 2
 //
-// Shows: a system is a class that declares coordinates and bodies and says where the bodies are; which coordinates is
-// the user's choice. Newmark's method is of second order: half the step, a quarter of the energy error. The motion is
-// chaotic: a small difference grows until nothing can be predicted.
+// Shows: a system is a class that declares coordinates and bodies and says where the bodies are; which
+// coordinates is the user's choice. Newmark's method is of second order: half the step, a quarter of the
+// energy error. The motion is chaotic: a small difference grows until nothing can be predicted.
 // Run: ./run double_pendulum
 // Prints: step 1   ms: energy drift 9.3e-05 of weight times length
 // Prints: step 0.5 ms: energy drift 2.2e-05 of weight times length

@@ -13,7 +13,7 @@
 // Prints: Newton's law of the crank holds within 1e-9 N: yes
 // Prints: energy error 5.2e-04 J
 // Next: andrews.cpp (three loops)
-// Reference: J. J. Uicker et al., Theory of Machines and Mechanisms, 4th ed., 2011, ch. 1 and 14.
+// Reference: J. J. Uicker et al., Theory of Machines and Mechanisms, 4th ed., Oxford, 2011.
 
 #include <fmt/format.h>
 
@@ -43,7 +43,7 @@ class FourBar : public System {
   Reaction bearing_A = reaction("bearing A"), pin_B = reaction("pin B");
   double rocker_angle() const { return closing.value(1); }
 
-  // 2. Where the bodies are; p = angle of the coupler from x, angle of the rocker from x (towards z: minus rotate_y).
+  // 2. Where the bodies are; p = angles of coupler and rocker from x, towards z (rotate_y turns z towards x).
   void positions() override {
     const Frame A = bearing_A.cut(Frame());
     const Frame B = pin_B.cut(A * rotate_y(-a) * translate(AB, 0, 0));

@@ -6,7 +6,8 @@
 //      |  +---------+  | r W  W      weight on the rotor's axis
 //      +---------------+
 //
-// Shows: a coordinate given in time, and the moment that drives it; small motions about a state that is not at rest.
+// Shows: a coordinate given in time, and the moment that drives it; small motions about a state that is not
+// at rest.
 // Run: ./run gyroscope
 // Prints: steady precession    0.88290 rad/s, closed form 0.88290 rad/s
 // Prints: nutation             7.158 Hz, closed form 7.158 Hz
@@ -14,7 +15,7 @@
 // Prints: motor moment up to   0.0048 N m
 // Prints: energy error         2.1e-08 J
 // Next: slider_crank.cpp (a closed loop)
-// Reference: K. Magnus, Kreisel, Springer, 1971, ch. 3.
+// Reference: K. Magnus, Kreisel, Springer, 1971.
 
 #include <fmt/format.h>
 
@@ -30,7 +31,7 @@ using namespace easydyn::units;
 
 // 1. Data [kg m^2, kg, m, rad/s].
 constexpr double C = 2.0e-3, A = 1.1e-3;              // rotor along and across its axis
-constexpr double J_inner = 0.5e-3, J_outer = 1.5e-3;  // rings, about their axis of rotation
+constexpr double J_inner = 0.5e-3, J_outer = 1.5e-3;  // rings, the same about every axis
 constexpr double weight = 0.15, arm = 0.12, Omega = 100, g = 9.81;
 
 class Gyroscope : public System {

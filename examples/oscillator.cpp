@@ -7,7 +7,7 @@
 //     [ m ]
 //       | F          force, an input
 //
-// Shows: a system in a few lines; static equilibrium; an integrator that finds events (here: the highest points);
+// Shows: a system in a few lines; static equilibrium; an integrator that finds events (the highest points);
 // the frequency response from an input.
 // Run: ./run oscillator
 // Prints: sag                  24.525 mm, m g / k           24.525 mm

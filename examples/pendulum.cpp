@@ -13,7 +13,7 @@
 // Prints: bearing force at the lowest point, from 90 deg: 2.5000 m g, closed form 2.5000 m g
 // Prints: energy error 4.7e-05 J
 // Next: double_pendulum.cpp (two coordinates)
-// Reference: H. Goldstein, Classical Mechanics, 3rd ed., 2002, ch. 3; M. Abramowitz, I. Stegun, ch. 17.
+// Reference: L. D. Landau, E. M. Lifshitz, Mechanics, 3rd ed., Pergamon, 1976, sect. 11.
 
 #include <fmt/format.h>
 

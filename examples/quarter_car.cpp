@@ -8,15 +8,16 @@
 //          >   k_t    tyre
 //     -----------     u       height of the post under the tyre, an input
 //
-// Shows: modes, and how to animate them; frequency response from an input; loaded springs given by their preload. At
-// w^2 = k_t / m_w the body moves by m_w / m_b of the road, whatever the suspension is.
+// Shows: modes, and their animation; frequency response from an input; loaded springs given by their preload.
+// At w^2 = k_t / m_w the body moves by m_w / m_b of the post, whatever the suspension is.
 // Run: ./run quarter_car
 // Prints: bounce    1.2484 Hz, closed form 1.2484 Hz; with the damper 1.269 Hz, damping ratio 0.258
 // Prints: wheel hop 11.3155 Hz, closed form 11.3155 Hz; with the damper 11.132 Hz, damping ratio 0.279
 // Prints: damper  600 N s/m: gain at 10.705 Hz 0.13125, m_w / m_b 0.13125
 // Prints: damper 4000 N s/m: gain at 10.705 Hz 0.13125, m_w / m_b 0.13125
+// Prints: energy error 1.1e-02 J
 // Next: dc_motor.cpp (first-order states)
-// Reference: M. Mitschke, H. Wallentowitz, Dynamik der Kraftfahrzeuge, 5th ed., Springer, 2014, part III.
+// Reference: M. Mitschke, H. Wallentowitz, Dynamik der Kraftfahrzeuge, 5th ed., Springer, 2014.
 
 #include <fmt/format.h>
 
@@ -60,8 +61,8 @@ class QuarterCar : public System {
   VerticalSpringDamper suspension, tyre{"tyre", k_t, 0, z_wheel, (m_b + m_w) * g};
 };
 
-visu::Scene draw(const Recorder& recorder, double height) {
-  visu::Scene scene = recorder.scene();
+// What the bodies look like, with the post at a height.
+visu::Scene dressed(visu::Scene scene, double height) {
   const visu::Anchor axle{"wheel", {0, -0.15, 0}}, lower{"body", {0, -0.15, 0}},
       tube{"body", {0, -0.15, -0.2}};
   scene.items = {{"body", "body", visu::Shape::box, {0.7, 0.5, 0.2}, "#4477aa", {{0, 0, 0.1}}},
@@ -118,21 +119,14 @@ int main() try {
   const Eigen::VectorXd energy = recorder.total_energy();
   fmt::print("energy error {:.1e} J\n", (energy.array() - energy[0]).abs().maxCoeff());
 
-  // 7. Report; each mode is a hand-made sequence of states.
+  // 7. Report.
   visu::Report report("Quarter car", "a step, frequency response and modes");
   report.add_section("Step of 50 mm")
-      .add_animation(draw(recorder, 50 * mm))
+      .add_animation(dressed(recorder.scene(), 50 * mm))
       .add_charts({recorder.coordinate_chart("m"), recorder.energy_chart()});
   report.add_section("Frequency response").add_chart(response).add_section("Modes");
   for (std::size_t i = 0; i < 2; ++i) {
-    Recorder period(car, 1e-9);
-    for (int step = 0; step <= 60; ++step) {
-      State at = rest;
-      at.t = step / 60. / damped[i].frequency;
-      at.q += 0.06 * (damped[i].shape * std::polar(1., 2 * pi * step / 60)).real();
-      period(at);
-    }
-    report.add_animation(draw(period, 0),
+    report.add_animation(dressed(mode_scene(car, rest, damped[i], {.amplitude = 0.06}), 0),
                          fmt::format("{}, {:.2f} Hz, damping ratio {:.2f}; shown without its decay.",
                                      i ? "Wheel hop" : "Bounce", damped[i].frequency, damped[i].damping));
   }

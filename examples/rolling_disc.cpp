@@ -14,7 +14,7 @@
 // Prints: at 1.2 of the critical speed 0.9905 m/s: lean ~ exp((0.000 + 3.393 i) t), closed form (0.000 + 3.393 i)
 // Prints: energy error 5.1e-05 J
 // Next: quarter_car.cpp (modes and frequency response)
-// Reference: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems, AMS, 1972, ch. 2.
+// Reference: J. I. Neimark, N. A. Fufaev, Dynamics of Nonholonomic Systems, AMS, 1972.
 
 #include <fmt/format.h>
 

@@ -6,15 +6,15 @@
 //      (o)    wheels    x      way, x = r times angle of the wheels
 //     -------------     M      moment of the motors, between body and wheels, an input
 //
-// Shows: rolling in independent coordinates; A and B from the kernel; a controller inside forces(). The unstable pole is
-// w^2 = m g l m_x / (m_x m_t - m^2 l^2); the controller first drives backwards to go forwards.
+// Shows: rolling in independent coordinates; A and B from the kernel; a controller inside forces(), which
+// first drives backwards to go forwards.
 // Run: ./run segway
 // Prints: unstable pole 5.35844 1/s, closed form 5.35844 1/s
 // Prints: poles with feedback: (-4.500, 0.000) (-4.000, 0.000) (-1.000, 1.000) (-1.000, -1.000)
 // Prints: backwards first by 0.150 m, lean up to 11.95 deg, after 8 s at 1.999 m
 // Prints: energy error 3.8e-04 J
 // Next: robot_arm.cpp (a mechanism from a file)
-// Reference: K. J. Astrom, R. M. Murray, Feedback Systems, Princeton, 2008, ch. 6 (Ackermann's formula).
+// Reference: K. J. Astrom, R. M. Murray, Feedback Systems, Princeton, 2008, ch. 6.
 
 #include <fmt/format.h>
 

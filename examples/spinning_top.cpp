@@ -48,7 +48,7 @@ class Top : public System {
   // 3. Forces.
   void forces() override { gravity(g); }
 
-  // 4. The state at the start, with a given rate of precession; C n is the moment of momentum about the top's axis.
+  // 4. The state at the start, with a given rate of precession and the spin n about the top's own axis.
   State start(double precession) {
     State state = initial_state();
     state.qd << precession, 0, spin - precession * std::cos(tilt);
@@ -69,9 +69,10 @@ int main() try {
              steady);
   fmt::print("tilt stays within    1e-6 rad: {}\n", wobble < 1e-6 ? "yes" : "no");
 
-  // 6. Let go without precession: it falls, and rises again to where it was. With u = cos theta and b = C^2 n^2 /
-  // (4 A m g h), the lowest u and the time of one nutation are
-  //   u_2,3 = b -+ sqrt(b^2 - 2 b u_0 + 1)      T = 4 K(k) / sqrt(2 m g h / A (u_3 - u_2)),  k^2 = (u_0 - u_2) / (u_3 - u_2)
+  // 6. Let go without precession: it falls, and rises again to where it was. With u = cos theta and
+  // b = C^2 n^2 / (4 A m g h), the lowest u is u_2 and one nutation takes T:
+  //   u_2,3 = b -+ sqrt(b^2 - 2 b u_0 + 1)
+  //   T = 4 K(k) / sqrt(2 m g h / A (u_3 - u_2))      k^2 = (u_0 - u_2) / (u_3 - u_2)
   const double b = H * H / (4 * A * m_g_h), root = std::sqrt(b * b - 2 * b * u0 + 1);
   const double u2 = b - root, u3 = b + root;
   const double period =
@@ -97,16 +98,11 @@ int main() try {
 
   // 7. Report, with the path of the upper end of the stem.
   using enum visu::Shape;
-  const Eigen::Quaterniond upright(
-      Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitX()));  // cylinders lie along y
+  // cylinders lie along y
+  const Eigen::Quaterniond upright(Eigen::AngleAxisd(pi / 2, Eigen::Vector3d::UnitX()));
   visu::Scene scene = recorder.scene();
   scene.items = {{"disc", "disc", wheel, {radius, 0.012, 1}, "#4477aa", {{0, 0, 0}, upright}},
-                 {"stem",
-                  "disc",
-                  cylinder,
-                  {0.003, height + 0.04, 1},
-                  "#333333",
-                  {{0, 0, (0.04 - height) / 2}, upright}}};
+                 {"stem", "disc", cylinder, {0.003, 0.09, 1}, "#333333", {{0, 0, -0.005}, upright}}};
   for (std::size_t i = 0; i < path.size(); i += 60)
     scene.items.push_back({"path", "", sphere, {0.0008, 1, 1}, "#bb5566", {path[i]}});
   scene.ground = 0;
