@@ -84,8 +84,9 @@ visu::Chart Recorder::energy_chart() const {
   chart.series.push_back({"potential", time(), account(&EnergyBalance::potential)});
   const VectorXd dissipated = account(&EnergyBalance::dissipated),
                  supplied = account(&EnergyBalance::supplied);
-  if (dissipated.cwiseAbs().maxCoeff() > 0) chart.series.push_back({"dissipated", time(), dissipated});
-  if (supplied.cwiseAbs().maxCoeff() > 0) chart.series.push_back({"supplied", time(), supplied});
+  const double rounding = 1e-12 * (chart.series[0].y.cwiseAbs() + chart.series[1].y.cwiseAbs()).maxCoeff();
+  if (dissipated.cwiseAbs().maxCoeff() > rounding) chart.series.push_back({"dissipated", time(), dissipated});
+  if (supplied.cwiseAbs().maxCoeff() > rounding) chart.series.push_back({"supplied", time(), supplied});
   chart.series.push_back({"balance (constant)", time(), total_energy(), visu::Stroke::dashed});
   return chart;
 }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <functional>
 
 #include "easydyn/easydyn.hpp"
 
@@ -138,6 +139,30 @@ TEST(HeavyTop, PrecessesSteadily) {
   for (int i = 0; i < 1000; ++i) runge_kutta_step(system, s, 5e-4);
   EXPECT_NEAR(s.q[1], theta, 1e-9);
   EXPECT_NEAR(s.q[0], W * 0.5, 1e-9);
+}
+
+TEST(Recorder, DrawsNoCurveForRoundingInTheSuppliedEnergy) {
+  class Driven : public System {
+   public:
+    explicit Driven(double power) : power_(power) {}
+    Coordinate x = coordinate("x", 0, 1);
+    Body& block = body("block", 2.0);
+    void positions() override { block = translate(x, 0, 0); }
+    void forces() override { energy().supplied += power_; }
+
+   private:
+    double power_;
+  };
+  const auto curves = [](double power) {
+    Driven driven(power);
+    Newmark newmark(driven, {.step = 0.1});
+    Recorder recorder(driven, 0.1);
+    recorder(newmark.state());
+    newmark.advance(1, std::ref(recorder));
+    return recorder.energy_chart().series.size();
+  };
+  EXPECT_EQ(curves(1e-14), 3u);  // kinetic, potential, balance; 1e-14 J beside 1 J
+  EXPECT_EQ(curves(1e-3), 4u);
 }
 
 }  // namespace
