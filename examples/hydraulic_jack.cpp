@@ -8,7 +8,10 @@
 // Shows: pressures as first-order states, a jack between two bodies, a controller that opens the valve; oil is a spring of
 // its own. Statics by hand: F times its lever carries the weight of the bed.
 // Run: ./run hydraulic_jack
-// Prints: @@
+// Prints: angle 34.96 deg of 35.00 deg after 12 s
+// Prints: jack force 69.14 kN, by its lever 69.15 kN; bottom pressure 116.7 bar
+// Prints: on its oil alone 4.56 Hz, by hand 4.56 Hz
+// Prints: energy error 9e-07 of the energy supplied
 // Next: bogie.cpp (a vehicle on its track)
 // Reference: H. E. Merritt, Hydraulic Control Systems, Wiley, 1967.
 

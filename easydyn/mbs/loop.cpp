@@ -87,12 +87,15 @@ void LoopClosure::solve_least_squares(VectorXd& right, X&& x) {
 int LoopClosure::compute_orientation() const {
   if (jacobian_.rows() != n_) return 0;
   // J P = Q R; each reflection of Q changes the sign, unless it has nothing to do.
-  double sign = static_cast<double>(qr_.colsPermutation().determinant());
+  const auto& order = qr_.colsPermutation().indices();
+  bool is_negative = false;
   for (int i = 0; i < n_; ++i) {
-    sign *= qr_.matrixQR()(i, i) < 0 ? -1 : 1;
-    if (qr_.hCoeffs()[i] != 0) sign = -sign;
+    if (qr_.matrixQR()(i, i) < 0) is_negative = !is_negative;
+    if (qr_.hCoeffs()[i] != 0) is_negative = !is_negative;
+    for (int j = 0; j < i; ++j)
+      if (order[j] > order[i]) is_negative = !is_negative;
   }
-  return sign < 0 ? -1 : 1;
+  return is_negative ? -1 : 1;
 }
 
 bool LoopClosure::take(std::span<const Expr> equations) {
