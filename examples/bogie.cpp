@@ -59,13 +59,13 @@ class Bogie : public System {
   // 3. Forces; the springs carry the frame at rest.
   void forces() override {
     gravity(g);
-    front_spring.apply(front, {0, 0, 0}, frame, {a, 0, 0});
-    rear_spring.apply(rear, {0, 0, 0}, frame, {-a, 0, 0});
+    front_spring_.apply(front, {0, 0, 0}, frame, {a, 0, 0});
+    rear_spring_.apply(rear, {0, 0, 0}, frame, {-a, 0, 0});
   }
 
  private:
-  VerticalSpringDamper front_spring{"front primary", k, d, z_frame - wheel_radius, mass* g / 2};
-  VerticalSpringDamper rear_spring{"rear primary", k, d, z_frame - wheel_radius, mass* g / 2};
+  VerticalSpringDamper front_spring_{"front primary", k, d, z_frame - wheel_radius, mass* g / 2};
+  VerticalSpringDamper rear_spring_{"rear primary", k, d, z_frame - wheel_radius, mass* g / 2};
 };
 
 struct Amplitudes {
@@ -144,16 +144,16 @@ int main() try {
   for (Eigen::Index i = 0; i < 37; ++i) {
     Bogie one(lengths[i]);
     Recorder recorder(one, 5 * ms);
-    const Amplitudes s = simulate(one, recorder), e = exact(lengths[i]);
+    const Amplitudes found = simulate(one, recorder), e = exact(lengths[i]);
     const Eigen::VectorXd energy = recorder.total_energy();
-    bounce[i] = s.bounce / height;
-    pitch[i] = a * s.pitch / height;
-    worst =
-        std::max({worst, std::abs(s.bounce - e.bounce) / height, a * std::abs(s.pitch - e.pitch) / height});
+    bounce[i] = found.bounce / height;
+    pitch[i] = a * found.pitch / height;
+    worst = std::max(
+        {worst, std::abs(found.bounce - e.bounce) / height, a * std::abs(found.pitch - e.pitch) / height});
     energy_error = std::max(energy_error, (energy.array() - energy[0]).abs().maxCoeff());
     if (std::abs(lengths[i] - 2 * a) < 1e-9 || std::abs(lengths[i] - 4 * a) < 1e-9) {
       fmt::print("wavelength {} m: bounce {:.3f} mm, pitch {:.3f} mrad; closed form {:.3f} mm, {:.3f} mrad\n",
-                 lengths[i], s.bounce / mm, s.pitch / 1e-3, e.bounce / mm, e.pitch / 1e-3);
+                 lengths[i], found.bounce / mm, found.pitch / 1e-3, e.bounce / mm, e.pitch / 1e-3);
       report.add_animation(draw(recorder, lengths[i]),
                            fmt::format("Wavelength {} m, wheelbase {} m.", lengths[i], 2 * a));
     }

@@ -31,7 +31,7 @@ constexpr double AB = 0.15, BC = 0.40, CD = 0.32, AD = 0.36;
 constexpr double mass_AB = 1.2, mass_BC = 1.6, mass_CD = 1.3, width = 0.03, g = 9.81;
 
 class FourBar : public System {
-  Loop<2> closing = loop<2>("four-bar", {-0.3, 1.5});
+  Loop<2> closing_ = loop<2>("four-bar", {-0.3, 1.5});
 
  public:
   FourBar() : System("Four-bar") {}
@@ -41,14 +41,14 @@ class FourBar : public System {
   Body& coupler = body("coupler", Inertia::box(mass_BC, BC, width, width));
   Body& rocker = body("rocker", Inertia::box(mass_CD, CD, width, width));
   Reaction bearing_A = reaction("bearing A"), pin_B = reaction("pin B");
-  double rocker_angle() const { return closing.value(1); }
+  double rocker_angle() const { return closing_.value(1); }
 
   // 2. Where the bodies are; p = angles of coupler and rocker from x, towards z (rotate_y turns z towards x).
   void positions() override {
     const Frame A = bearing_A.cut(Frame());
     const Frame B = pin_B.cut(A * rotate_y(-a) * translate(AB, 0, 0));
     const Frame D = translate(AD, 0, 0);
-    const auto [coupler_angle, rocker_angle] = closing.solve([&](const auto& p) {
+    const auto [coupler_angle, rocker_angle] = closing_.solve([&](const auto& p) {
       const Frame C = B * rotate_y(a - p[0]) * translate(BC, 0, 0),
                   C_too = D * rotate_y(-p[1]) * translate(CD, 0, 0);
       const ExprVector gap = C.express_point({0, 0, 0}) - C_too.express_point({0, 0, 0});

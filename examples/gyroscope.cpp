@@ -37,7 +37,7 @@ constexpr double weight = 0.15, arm = 0.12, Omega = 100, g = 9.81;
 class Gyroscope : public System {
  public:
   Gyroscope() : System("Gyroscope") {
-    spin.prescribe([](double t) { return ImposedMotion{Omega * t, Omega, 0}; });
+    spin.prescribe([](double time) { return ImposedMotion{Omega * time, Omega, 0}; });
   }
 
   Coordinate psi = coordinate("psi"), theta = coordinate("theta"), spin = coordinate("spin");

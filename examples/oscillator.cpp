@@ -47,12 +47,12 @@ class Oscillator : public System {
   // 3. Forces.
   void forces() override {
     gravity();
-    suspension.apply(Frame(), {0, 0, 0}, block, {0, 0, side / 2});
+    suspension_.apply(Frame(), {0, 0, 0}, block, {0, 0, side / 2});
     block.add_force({0, 0, force.value()}, block.position());
   }
 
  private:
-  SpringDamper suspension{"suspension", stiffness, damping, free_length};
+  SpringDamper suspension_{"suspension", stiffness, damping, free_length};
 };
 
 const Eigen::Quaterniond upright(Eigen::AngleAxisd(pi / 2,

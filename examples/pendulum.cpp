@@ -57,8 +57,8 @@ State swing_down(Pendulum& system, double amplitude) {
 }
 
 double exact_period(double amplitude) {
-  const double J = mass * length * length / 3, s = length / 2;
-  return 4 * std::sqrt(J / (mass * g * s)) * std::comp_ellint_1(std::sin(amplitude / 2));
+  const double J = mass * length * length / 3, lever = length / 2;
+  return 4 * std::sqrt(J / (mass * g * lever)) * std::comp_ellint_1(std::sin(amplitude / 2));
 }
 
 int main() try {

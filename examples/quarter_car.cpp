@@ -36,7 +36,7 @@ constexpr double m_b = 320, m_w = 42, k = 22 * kN, k_t = 190 * kN, z_wheel = 0.3
 class QuarterCar : public System {
  public:
   explicit QuarterCar(double damping)
-      : System("Quarter car"), suspension("suspension", k, damping, z_body - z_wheel, m_b * g) {}
+      : System("Quarter car"), suspension_("suspension", k, damping, z_body - z_wheel, m_b * g) {}
 
   Coordinate zb = coordinate("body"), zw = coordinate("wheel");
   Input post_height = input("post height");
@@ -46,19 +46,19 @@ class QuarterCar : public System {
   void positions() override {
     car_body = translate(0, 0, z_body + zb);
     wheel = translate(0, 0, z_wheel + zw);
-    post = translate(0, 0, post_height.value());
+    post_ = translate(0, 0, post_height.value());
   }
 
   // 3. Forces; the springs carry the weight at rest.
   void forces() override {
     gravity(g);
-    suspension.apply(wheel, {0, 0, 0}, car_body, {0, 0, 0});
-    tyre.apply(post, {0, 0, 0}, wheel, {0, 0, 0});
+    suspension_.apply(wheel, {0, 0, 0}, car_body, {0, 0, 0});
+    tyre_.apply(post_, {0, 0, 0}, wheel, {0, 0, 0});
   }
 
  private:
-  Frame post;
-  VerticalSpringDamper suspension, tyre{"tyre", k_t, 0, z_wheel, (m_b + m_w) * g};
+  Frame post_;
+  VerticalSpringDamper suspension_, tyre_{"tyre", k_t, 0, z_wheel, (m_b + m_w) * g};
 };
 
 // What the bodies look like, with the post at a height.

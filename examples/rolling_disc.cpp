@@ -62,8 +62,9 @@ class Disc : public System {
 
 // Spin of a steady circle, from Euler's equation about the horizontal axis through the disc.
 double steady_spin(double lean, double turn) {
-  const double s = std::sin(lean), c = std::cos(lean);
-  return -turn * s + (A * turn * turn * s * c - mass * g * r * s) / ((C + mass * r * r) * turn * c);
+  const double sine = std::sin(lean), cosine = std::cos(lean);
+  return -turn * sine +
+         (A * turn * turn * sine * cosine - mass * g * r * sine) / ((C + mass * r * r) * turn * cosine);
 }
 
 // Of the small motions about upright rolling, the eigenvalue that is not zero: a growth, or a frequency.

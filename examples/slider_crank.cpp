@@ -34,7 +34,7 @@ enum class Closure { formula, loop };
 
 class SliderCrank : public System {
   const Closure closure_;
-  Loop<1> closing = loop<1>("connecting rod", {0.1});
+  Loop<1> closing_ = loop<1>("connecting rod", {0.1});
 
  public:
   explicit SliderCrank(Closure closure) : System("Slider-crank"), closure_(closure) {}
@@ -48,7 +48,7 @@ class SliderCrank : public System {
   void positions() override {
     crank = rotate_y(-a);
     const Frame pin = crank * translate(r, 0, 0);
-    const Expr b = closure_ == Closure::formula ? asin(r / l * sin(a)) : closing.solve([&](const auto& p) {
+    const Expr b = closure_ == Closure::formula ? asin(r / l * sin(a)) : closing_.solve([&](const auto& p) {
       return std::array{(pin * rotate_y(a + p[0]) * translate(l, 0, 0)).express_point({0, 0, 0}).z()};
     })[0];
     rod = pin * rotate_y(a + b) * translate(l / 2, 0, 0);
