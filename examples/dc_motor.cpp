@@ -9,7 +9,7 @@
 // Run: ./run dc_motor
 // Prints: holding current 1.0462 A, m g l sin(a) / (n k) = 1.0462 A
 // Prints: goal 60.00 deg, reached 60.00 deg, voltage at most 12.00 V
-// Prints: slowest pole -2.309 +- 1.931i 1/s, of the equation by hand -2.309 +- 1.931i 1/s
+// Prints: slowest pole -2.312 +- 1.933i 1/s, of the equation by hand -2.312 +- 1.933i 1/s
 // Prints: energy error 7e-06 of the energy supplied
 // Next: hydraulic_jack.cpp (oil instead of current)
 // Reference: K. J. Astrom, T. Hagglund, Advanced PID Control, ISA, 2006.

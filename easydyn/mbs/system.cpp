@@ -9,104 +9,6 @@ namespace easydyn {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-Coordinate::operator Expr() const {
-  const System::CoordinateData& c = system_->data_of(*this);
-  if (!c.is_held && system_->q_) return Expr::coordinate(c.slot, system_->q_[c.slot], system_->qd_[c.slot]);
-  return Expr::of_parts(value(), c.now.rate, c.now.acceleration, Gradient::unit(c.slot));
-}
-
-double Coordinate::value() const {
-  if (!system_->q_) throw ModelError("a coordinate has a value in positions() and forces() only");
-  const System::CoordinateData& c = system_->data_of(*this);
-  return c.is_held ? c.now.value : system_->q_[c.slot];
-}
-
-double Coordinate::rate() const {
-  if (!system_->qd_) throw ModelError("a coordinate has a rate in positions() and forces() only");
-  const System::CoordinateData& c = system_->data_of(*this);
-  return c.is_held ? c.now.rate : system_->qd_[c.slot];
-}
-
-int Coordinate::index() const {
-  const System::CoordinateData& c = system_->data_of(*this);
-  if (c.is_held)
-    throw ModelError(fmt::format("coordinate \"{}\" is held: it is not among the unknowns", c.name));
-  return c.slot;
-}
-
-void Coordinate::add_force(double Q) const {
-  if (!system_->in_forces_) throw ModelError("a generalised force is added inside forces() only");
-  const System::CoordinateData& c = system_->data_of(*this);
-  system_->generalized_forces_.push_back({c.slot, Q});
-  if (c.is_held) system_->energy().supplied -= Q * c.now.rate;
-}
-
-void Coordinate::lock(double value) {
-  if (!std::isfinite(value))
-    throw ModelError(
-        fmt::format("coordinate \"{}\" locked at {}: must be finite", system_->data_of(*this).name, value));
-  prescribe([value](double) { return ImposedMotion{value, 0, 0}; });
-}
-
-void Coordinate::prescribe(std::function<ImposedMotion(double)> motion) {
-  System::CoordinateData& c = system_->coordinates_[static_cast<std::size_t>(number_)];
-  c.is_held = true;
-  c.imposed = std::move(motion);
-  system_->assign_slots();
-}
-
-void Coordinate::release() {
-  system_->coordinates_[static_cast<std::size_t>(number_)].is_held = false;
-  system_->assign_slots();
-}
-
-bool Coordinate::is_held() const {
-  return system_->data_of(*this).is_held;
-}
-
-double FirstOrderState::value() const {
-  if (!system_->x_) throw ModelError("a first-order state has a value in positions() and forces() only");
-  return system_->x_[index_];
-}
-
-void FirstOrderState::set_rate(double f) const {
-  if (!system_->in_forces_) throw ModelError("the rate of a first-order state is set inside forces() only");
-  system_->rates_[static_cast<std::size_t>(index_)] = f;
-}
-
-double Input::value() const {
-  return system_->input_value(index_);
-}
-
-void Input::set(double value) const {
-  system_->set_input(index_, value);
-}
-
-void Output::set(double value) const {
-  if (!system_->in_forces_) throw ModelError("an output is set inside forces() only");
-  system_->outputs_[static_cast<std::size_t>(index_)].value = value;
-}
-
-double Output::value() const {
-  return system_->output_value(index_);
-}
-
-Frame Reaction::cut(const Frame& frame) const {
-  if (!system_->cuts_open_) return frame;
-  const int slot = system_->reactions_[static_cast<std::size_t>(number_)].slot;
-  const auto still = [slot](int i) { return Expr::of_parts(0, 0, 0, Gradient::unit(slot + i)); };
-  return frame * translate(still(0), still(1), still(2)) * rotate_x(still(3)) * rotate_y(still(4)) *
-         rotate_z(still(5));
-}
-
-const Eigen::Vector3d& Reaction::force() const {
-  return system_->reactions_[static_cast<std::size_t>(number_)].force;
-}
-
-const Eigen::Vector3d& Reaction::moment() const {
-  return system_->reactions_[static_cast<std::size_t>(number_)].moment;
-}
-
 System::System(std::string name) : name_(std::move(name)) {}
 System::~System() = default;
 
@@ -190,13 +92,12 @@ FlexibleBody& System::flexible_body(std::string name, const FlexibleModel& model
   return *flexible_bodies_.back();
 }
 
-std::shared_ptr<LoopClosure> System::add_loop(std::string name, std::span<const double> guess) {
+std::shared_ptr<LoopClosure> System::add_loop(const std::string& name, std::span<const double> guess) {
   for (const auto& loop : loops_)
     if (loop->name() == name)
       throw ModelError(fmt::format("system \"{}\": there are two loops named \"{}\"", name_, name));
   constexpr int first_unknown = 1 << 24;  // in gradients, beyond all coordinates
-  loops_.push_back(
-      std::make_shared<LoopClosure>(name_, std::move(name), guess, first_unknown + loop_unknowns_));
+  loops_.push_back(std::make_shared<LoopClosure>(name_, name, guess, first_unknown + loop_unknowns_));
   loop_unknowns_ += static_cast<int>(guess.size());
   return loops_.back();
 }

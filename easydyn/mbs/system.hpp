@@ -16,6 +16,7 @@
 #include "easydyn/mbs/loop.hpp"
 #include "easydyn/mbs/motion_tree.hpp"
 #include "easydyn/mbs/reaction.hpp"
+#include "easydyn/mbs/signals.hpp"
 #include "easydyn/mbs/state.hpp"
 #include "easydyn/mbs/velocity_constraint.hpp"
 
@@ -64,8 +65,8 @@ class System {
                          const Eigen::Matrix3d& orientation = Eigen::Matrix3d::Identity());
   /// Declares a closed loop with N unknowns and a guess of them.
   template <int N>
-  Loop<N> loop(std::string name, const std::array<double, N>& guess) {
-    return Loop<N>(add_loop(std::move(name), guess));
+  Loop<N> loop(const std::string& name, const std::array<double, N>& guess) {
+    return Loop<N>(add_loop(name, guess));
   }
   LinearStructure& structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K);
   /// Touches a structure at a place, inside forces(), in the same order at each evaluation. The port holds during
@@ -203,7 +204,7 @@ class System {
   void check_size(const State& state) const;
   void compute_body_mass_matrix(Eigen::Ref<Eigen::MatrixXd> M);
   void subtract_generalized_forces(double* r) const;
-  std::shared_ptr<LoopClosure> add_loop(std::string name, std::span<const double> guess);
+  std::shared_ptr<LoopClosure> add_loop(const std::string& name, std::span<const double> guess);
 
   std::string name_;
   std::vector<CoordinateData> coordinates_;

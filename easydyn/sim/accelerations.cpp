@@ -137,6 +137,14 @@ void AccelerationSolver::project_velocities(State& state) {
 
 void set_consistent_accelerations(System& system, State& state) {
   AccelerationSolver(system).solve(state);
+  if (state.qdd.allFinite()) return;
+  std::string names;
+  for (int i = 0; i < system.size(); ++i)
+    if (!std::isfinite(state.q[i]) || !std::isfinite(state.qd[i]))
+      names +=
+          fmt::format(" \"{}\" (q = {:g}, qd = {:g})", system.coordinate_name(i), state.q[i], state.qd[i]);
+  throw SolverError(fmt::format("system \"{}\": accelerations are not finite at t = {:g} s{}", system.name(),
+                                state.t, names.empty() ? "; a force or a position is not" : ", nor" + names));
 }
 
 }  // namespace easydyn

@@ -43,7 +43,7 @@ class AccelerationSolver {
 };
 
 /// Sets state.qdd (and lambda, xd) so that the equations of motion hold.
-/// @throws SolverError if the mass matrix is singular
+/// @throws SolverError as AccelerationSolver, or if an acceleration is not finite, naming the coordinates that are not
 void set_consistent_accelerations(System& system, State& state);
 
 }  // namespace easydyn

@@ -7,6 +7,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <exception>
 #include <sundials/sundials_context.hpp>
@@ -95,6 +96,17 @@ class StaticProblem {
     return s;
   }
 
+  /// Measure of the coordinates for damping: their masses; 1 for first-order states, 0 for port forces.
+  VectorXd inertia() {
+    VectorXd D = VectorXd::Zero(size());
+    Eigen::MatrixXd M(n_, n_);
+    VectorXd bias(n_);
+    system_.compute_mass_and_bias(state_, M, bias);
+    D.head(n_) = M.diagonal();
+    D.segment(n_, n_first_).setOnes();
+    return D;
+  }
+
   /// Whether the last evaluation touched the structures elsewhere than where they were condensed.
   bool ports_moved() const { return condensation_.ports_moved(system_.ports()); }
 
@@ -160,6 +172,10 @@ Eigen::MatrixXd difference_jacobian(StaticProblem& problem, const VectorXd& z) {
   return J;
 }
 
+bool is_held(StaticProblem& problem, const VectorXd& z) {
+  return Eigen::FullPivLU<Eigen::MatrixXd>(difference_jacobian(problem, z)).isInvertible();
+}
+
 // Says which coordinate is the trouble: the one that moves without stiffness, else the one least in balance.
 [[noreturn]] void throw_unsettled(StaticProblem& problem, const VectorXd& z, const std::string& why) {
   VectorXd r(problem.size());
@@ -180,7 +196,9 @@ Eigen::MatrixXd difference_jacobian(StaticProblem& problem, const VectorXd& z) {
                   why, largest, problem.name(static_cast<int>(worst)), z[worst]));
 }
 
-void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+// Empty, or why KINSOL stopped.
+std::string solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference,
+                              const StaticOptions& options) {
   Kinsol k;
   const int n = problem.size();
   k.z = N_VMake_Serial(n, z.data(), k.context);
@@ -209,8 +227,39 @@ void solve_with_kinsol(StaticProblem& problem, VectorXd& z, double reference, co
     char* flag_name = KINGetReturnFlagName(flag);
     const std::string why = std::string("KINSOL stopped with ") + flag_name;
     free(flag_name);
-    throw_unsettled(problem, z, why);
+    return why;
   }
+  return "";
+}
+
+// The way of a heavily damped system to where its forces bring it, mu D z. = -r(z), by implicit steps that grow as the
+// residual falls (pseudo-transient continuation: Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998). Slower than Newton, but
+// from far away, and never to an equilibrium that it would leave.
+bool relax(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+  constexpr double first_move = 0.05;  // [m, rad]
+  const int n = problem.size();
+  const VectorXd D = problem.inertia();
+  VectorXd r(n), moved, r_moved(n);
+  problem.residual(z, r);
+  double mu = 0;
+  for (int i = 0; i < n; ++i)
+    if (D[i] > 0) mu = std::max(mu, std::abs(r[i]) / (first_move * D[i]));
+  for (int iteration = 0; iteration < 10 * options.max_iterations; ++iteration) {
+    if (r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference) return true;
+    Eigen::MatrixXd J = difference_jacobian(problem, z);
+    J.diagonal() += mu * D;
+    moved = z - J.partialPivLu().solve(r);
+    if (moved.allFinite()) problem.residual(moved, r_moved);
+    if (!moved.allFinite() || !r_moved.allFinite()) {
+      mu *= 4;
+      continue;
+    }
+    const double ratio = r_moved.norm() / std::max(r.norm(), 1e-300);
+    mu *= std::clamp(ratio, 0.2, 2.0);
+    z = moved;
+    r = r_moved;
+  }
+  return false;
 }
 
 // Undamped Newton with a difference Jacobian, while it helps.
@@ -247,7 +296,16 @@ State solve_static_equilibrium(System& system, const State& guess, const StaticO
     // Forces are measured against the largest one that acts at the guess.
     problem.residual(z, r);
     const double reference = std::max(r.lpNorm<Eigen::Infinity>(), 1.0);
-    if (pass == 0) solve_with_kinsol(problem, z, reference, options);
+    if (pass == 0) {
+      const VectorXd start = z;
+      const std::string why = solve_with_kinsol(problem, z, reference, options);
+      if (!why.empty()) {
+        const VectorXd reached = z;
+        z = start;
+        if (!is_held(problem, reached) || !relax(problem, z, reference, options))
+          throw_unsettled(problem, reached, why);
+      }
+    }
     polish(problem, z, reference, options);
     state = problem.solution(z);
 

@@ -14,8 +14,9 @@ struct StaticOptions {
 ///   r(q, qd, qdd, t) = 0 for q        qd = qdd = 0: static equilibrium
 ///
 /// The given rates and accelerations act as constant damping and inertia forces. KINSOL (Newton with line
-/// search) on the bodies' coordinates and the port forces of structures, which are condensed out; a last
-/// undamped Newton takes the residual to rounding.
+/// search) on the bodies' coordinates and the port forces of structures, which are condensed out. Where it does not get
+/// through, the system is let go with heavy damping from the guess, to a stable equilibrium. A last undamped Newton takes
+/// the residual to rounding.
 /// @param guess  start of the iteration; its t, qd and qdd are kept
 /// @throws SolverError naming the coordinate with the largest residual
 State solve_static_equilibrium(System& system, const State& guess, const StaticOptions& options = {});

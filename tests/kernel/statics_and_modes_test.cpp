@@ -79,6 +79,41 @@ TEST(StaticEquilibrium, NamesTheCoordinateThatNothingHolds) {
   }
 }
 
+// A rod turned by hand about the vertical: thrown out to cos(a) = g / (w^2 l) (point mass), from hanging, which is an
+// equilibrium as well but one that it would leave.
+TEST(StaticEquilibrium, LetsGoOfAnEquilibriumThatWouldNotHold) {
+  class Governor : public System {
+   public:
+    Coordinate a = coordinate("a", 1e-3);
+    Body& ball = body("ball", 2.0);
+    void positions() override { ball = rotate_z(8.0 * time()) * rotate_y(a) * translate(0, 0, -0.5); }
+    void forces() override { gravity(); }
+  } governor;
+  const State s = solve_static_equilibrium(governor);
+  const double expected = std::acos(9.81 / (64 * 0.5));
+  // Newton alone may settle on either; what it finds must be an equilibrium
+  const double c = std::abs(s.q[0]);
+  EXPECT_TRUE(std::abs(c - expected) < 1e-8 || c < 1e-8) << c;
+}
+
+// Far from equilibrium, over springs that bend their force twice: Newton's way is barred by a maximum.
+TEST(StaticEquilibrium, IsReachedFromFarAwayByDamping) {
+  class Snap : public System {
+   public:
+    Coordinate x = coordinate("x", -2.0);
+    Body& mass = body("mass", 1.0);
+    NonlinearSpringDamper spring{"arctan", Characteristic::function([](double u) {
+                                   return 50 * std::atan(20 * (u - 6)) + 3 * std::sin(2 * u);
+                                 }),
+                                 0};
+    void positions() override { mass = translate(10 + x, 0, 0); }
+    void forces() override { spring.apply({}, {0, 0, 0}, mass, {0, 0, 0}); }
+  } snap;
+  const State s = solve_static_equilibrium(snap);
+  EXPECT_NEAR(snap.compute_residual(s)[0], 0, 1e-6);
+  EXPECT_NEAR(s.q[0], -4, 0.1);  // the force changes sign near u = 6
+}
+
 TEST(StaticEquilibrium, PassesOnTheErrorsOfTheUsersProgram) {
   class Thrower : public System {
    public:
