@@ -234,7 +234,9 @@ class Picture {
 
   addGround(height) {
     const size = Math.max(this.high.x - this.low.x, this.high.y - this.low.y, 1);
-    const step = 10 ** Math.floor(Math.log10(size / 4)) / 2;
+    // about a dozen cells of 1, 2 or 5 times a power of ten
+    const decade = 10 ** Math.floor(Math.log10(size / 12));
+    const step = [1, 2, 5, 10].map((f) => f * decade).find((s) => s >= size / 12);
     const margin = Math.min(0.25 * size, 30) + step;
     const ends = [];
     const [x0, x1] = [Math.floor((this.low.x - margin) / step), Math.ceil((this.high.x + margin) / step)];
