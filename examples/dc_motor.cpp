@@ -103,7 +103,7 @@ int main() try {
                  {"load", "load", visu::Shape::sphere, {0.05, 1, 1}, "#bb5566"},
                  {"rotor", "rotor", visu::Shape::wheel, {0.04, 0.08, 1}, "#ccbb44"},
                  {"motor", "", visu::Shape::box, {0.1, 0.1, 0.1}, "#999999", {{0, 0.2, 0}}}};
-  scene.camera = {.target = {0.1, 0, -0.1}, .width = 1.1, .azimuth = -65, .elevation = 15};
+  scene.camera = {.target = {-0.1, 0, -0.15}, .width = 1.2, .azimuth = -65, .elevation = 15};
   visu::write_animation_page(
       "dc_motor.html", "DC motor with PID", scene,
       {recorder.coordinate_chart("rad"),
