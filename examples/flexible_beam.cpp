@@ -100,7 +100,7 @@ int main() try {
                          visu::LinkShape::line,
                          0.012,
                          "#4477aa"});
-    s.camera = {.target = {0.4, 0.4, 0}, .width = 2.4, .azimuth = -60, .elevation = 55};
+    s.camera = {.target = {0.55, 0.25, 0}, .width = 2, .azimuth = -60, .elevation = 55};
   };
   draw(scene);
   visu::Scene mode = mode_scene(still, rest, first, {.amplitude = 0.1});

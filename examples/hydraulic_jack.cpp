@@ -109,7 +109,8 @@ int main() try {
   // 7. Report.
   visu::Scene scene = recorder.scene();
   scene.items = {{"bed", "bed", visu::Shape::box, {bed_length, 2.2, 0.5}, "#4477aa"},
-                 {"frame", "", visu::Shape::box, {5.5, 0.8, 0.2}, "#999999", {{1.8, 0, -1.1}}}};
+                 {"frame", "", visu::Shape::box, {5.5, 0.8, 0.2}, "#999999", {{1.8, 0, -1.1}}},
+                 {"hinge", "", visu::Shape::box, {0.3, 0.8, 1.1}, "#999999", {{-0.15, 0, -0.5}}}};
   scene.links = {{"cylinder",
                   {"", foot},
                   {"bed", eye - Eigen::Vector3d(centre, 0, 0.25)},
@@ -117,12 +118,12 @@ int main() try {
                   0.06,
                   "#bb5566"}};
   scene.ground = -1.6;
-  scene.camera = {.target = {2, 0, 0.8}, .width = 9, .azimuth = -75, .elevation = 12};
+  scene.camera = {.target = {2, 0, 0.9}, .width = 12, .azimuth = -75, .elevation = 12};
   visu::write_animation_page(
       "hydraulic_jack.html", "Hydraulic jack", scene,
       {recorder.coordinate_chart("rad"),
        recorder.watched_chart("Pressures", "pressure", "bar", {"p_1", "p_2"}), recorder.energy_chart()},
-      "A bed of 5 t. The valve opens fully, then closes with the error; most of the "
+      "A bed of 5 t. The valve opens fully, then closes with the error; half of the "
       "energy is lost in its edges.");
   fmt::print("wrote hydraulic_jack.html\n");
 } catch (const std::exception& e) {
