@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "easydyn/error.hpp"
 
 namespace easydyn {
@@ -15,19 +17,26 @@ Linearization linearize(System& system, const State& state, double difference) {
   const int n = system.size();
   Linearization lin{system.compute_mass_matrix(state), MatrixXd(n, n), MatrixXd(n, n)};
 
-  // Column i: (r(-2d) - 8 r(-d) + 8 r(d) - r(2d)) / 12 d.
-  const auto column = [&](VectorXd State::*x, int i) -> VectorXd {
-    State shifted = state;
+  State shifted = state;
+  // (r(-2d) - 8 r(-d) + 8 r(d) - r(2d)) / 12 d
+  const auto derivative = [&](auto set, double step) -> VectorXd {
     const auto r = [&](double d) -> VectorXd {
-      (shifted.*x)[i] = (state.*x)[i] + d;
+      set(d);
       return system.compute_residual(shifted);
     };
-    return (r(-2 * difference) - 8 * r(-difference) + 8 * r(difference) - r(2 * difference)) /
-           (12 * difference);
+    const VectorXd sum = r(-2 * step) - 8 * r(-step) + 8 * r(step) - r(2 * step);
+    set(0.0);
+    return sum / (12 * step);
   };
   for (int i = 0; i < n; ++i) {
-    lin.K.col(i) = column(&State::q, i);
-    lin.C.col(i) = column(&State::qd, i);
+    lin.K.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; }, difference);
+    lin.C.col(i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; }, difference);
+  }
+  lin.B.resize(n, system.input_size());
+  for (int i = 0; i < system.input_size(); ++i) {
+    const double value = system.input_value(i);
+    lin.B.col(i) = -derivative([&](double d) { system.set_input(i, value + d); },
+                               difference * std::max(1.0, std::abs(value)));
   }
   return lin;
 }

@@ -262,14 +262,14 @@ bool relax(StaticProblem& problem, VectorXd& z, double reference, const StaticOp
   return false;
 }
 
-// Undamped Newton with a difference Jacobian, while it helps.
-void polish(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+// Undamped Newton with a difference Jacobian, while it helps. Empty, or why it is not at rest.
+std::string polish(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
   const int n = problem.size();
   VectorXd r(n), shifted, r_shifted(n);
   problem.residual(z, r);
   for (int iteration = 0; iteration < 10; ++iteration) {
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(difference_jacobian(problem, z));
-    if (!lu.isInvertible()) throw_unsettled(problem, z, "the stiffness matrix is singular");
+    if (!lu.isInvertible()) return "the stiffness matrix is singular";
     shifted = z - lu.solve(r);
     problem.residual(shifted, r_shifted);
     const bool better = r_shifted.lpNorm<Eigen::Infinity>() < 0.5 * r.lpNorm<Eigen::Infinity>();
@@ -279,8 +279,20 @@ void polish(StaticProblem& problem, VectorXd& z, double reference, const StaticO
     }
     if (!better) break;
   }
-  if (!(r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference))
-    throw_unsettled(problem, z, "the iteration does not settle");
+  return r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference ? "" : "the iteration does not settle";
+}
+
+// Newton, and where it does not get through the way of heavy damping.
+void settle(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
+  const VectorXd start = z;
+  std::string why = solve_with_kinsol(problem, z, reference, options);
+  if (why.empty()) why = polish(problem, z, reference, options);
+  if (why.empty()) return;
+  const VectorXd reached = z;
+  z = start;
+  if (!is_held(problem, reached) || !relax(problem, z, reference, options) ||
+      !polish(problem, z, reference, options).empty())
+    throw_unsettled(problem, reached, why);
 }
 
 }  // namespace
@@ -297,16 +309,10 @@ State solve_static_equilibrium(System& system, const State& guess, const StaticO
     problem.residual(z, r);
     const double reference = std::max(r.lpNorm<Eigen::Infinity>(), 1.0);
     if (pass == 0) {
-      const VectorXd start = z;
-      const std::string why = solve_with_kinsol(problem, z, reference, options);
-      if (!why.empty()) {
-        const VectorXd reached = z;
-        z = start;
-        if (!is_held(problem, reached) || !relax(problem, z, reference, options))
-          throw_unsettled(problem, reached, why);
-      }
+      settle(problem, z, reference, options);
+    } else if (const std::string why = polish(problem, z, reference, options); !why.empty()) {
+      throw_unsettled(problem, z, why);
     }
-    polish(problem, z, reference, options);
     state = problem.solution(z);
 
     // A port whose place depends on the coordinates has moved: condense again there.

@@ -39,6 +39,15 @@ TEST(StateSpace, HoldsCoordinatesFirstOrderStatesAndInputs) {
   EXPECT_EQ(motor.voltage.value(), 0);
 }
 
+TEST(Linearization, HasTheForcesOfItsInputs) {
+  Motor motor;
+  const Linearization lin = linearize(motor, motor.initial_state());
+  ASSERT_EQ(lin.B.cols(), 2);
+  EXPECT_NEAR(lin.B(0, 0), 0, 1e-12);   // the voltage acts through the current, which is constant here
+  EXPECT_NEAR(lin.B(0, 1), -1, 1e-10);  // the torque against the angle
+  EXPECT_EQ(motor.torque.value(), 0);
+}
+
 TEST(StateSpace, GivesTheModesOfCoordinatesAndFirstOrderStatesTogether) {
   Motor motor;
   const StateSpace space = linearize_state_space(motor, motor.initial_state());
