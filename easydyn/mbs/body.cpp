@@ -22,6 +22,17 @@ Body::Body(std::string name, const Inertia& inertia) : name_(std::move(name)), i
                     name_, J[0], J[1], J[2]));
 }
 
+void Body::check_place() const {
+  const MotionTree* const tree = MotionTree::current();
+  if (tree && tree->is_in_trial())
+    throw ModelError(fmt::format(
+        "body \"{}\" is placed inside the equations of a loop: place it after the loop is solved", name_));
+}
+
+void Body::throw_not_placed() const {
+  throw ModelError(fmt::format("body \"{}\" is used before positions() places it", name_));
+}
+
 Eigen::Vector3d Body::acceleration() const {
   return frame_.tree() ? frame_.tree()->acceleration_at(frame_.motion_index(), frame_.origin())
                        : Eigen::Vector3d(Eigen::Vector3d::Zero());

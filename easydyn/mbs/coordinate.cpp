@@ -12,13 +12,21 @@ Coordinate::operator Expr() const {
 }
 
 double Coordinate::value() const {
-  if (!system_->q_) throw ModelError("a coordinate has a value in positions() and forces() only");
+  if (!system_->q_)
+    throw ModelError(
+        fmt::format("coordinate \"{}\" has a value in positions() and forces() only; elsewhere it is in "
+                    "State::q",
+                    system_->data_of(*this).name));
   const System::CoordinateData& c = system_->data_of(*this);
   return c.is_held ? c.now.value : system_->q_[c.slot];
 }
 
 double Coordinate::rate() const {
-  if (!system_->qd_) throw ModelError("a coordinate has a rate in positions() and forces() only");
+  if (!system_->qd_)
+    throw ModelError(
+        fmt::format("coordinate \"{}\" has a rate in positions() and forces() only; elsewhere it is in "
+                    "State::qd",
+                    system_->data_of(*this).name));
   const System::CoordinateData& c = system_->data_of(*this);
   return c.is_held ? c.now.rate : system_->qd_[c.slot];
 }

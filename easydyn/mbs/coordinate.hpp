@@ -12,6 +12,10 @@ class System;
 /// A motion given in time: value, rate, acceleration.
 struct ImposedMotion {
   double value = 0, rate = 0, acceleration = 0;
+  ImposedMotion() = default;
+  /// All three, which must agree: rate and acceleration are not derived from the value.
+  ImposedMotion(double value_, double rate_, double acceleration_)
+      : value(value_), rate(rate_), acceleration(acceleration_) {}
 };
 
 /// A generalised coordinate q_i of a system; in expressions it stands for its current value and rate.

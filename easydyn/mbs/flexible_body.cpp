@@ -39,9 +39,13 @@ FlexibleBody::FlexibleBody(System& system, std::string name, const FlexibleModel
   K_ = shapes_.transpose() * (model.K * shapes_);
   K_ = 0.5 * (K_ + K_.transpose()).eval();
   D_ = MatrixXd::Zero(m, m);
-  if (damping_ratio > 0 && m > 0) {
-    // 2 zeta w for each mode of the shapes
+  if (m > 0) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K_, M_);
+    if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 1e-12 * eigen.eigenvalues()[m - 1]))
+      throw ModelError(fmt::format("{}: its shapes contain rigid motion, which the floating frame makes already; clamp "
+                                   "a node, or six displacements",
+                                   object));
+    // 2 zeta w for each mode of the shapes
     const MatrixXd momentum = M_ * eigen.eigenvectors();
     D_ = momentum * (2 * damping_ratio * eigen.eigenvalues().cwiseMax(0).cwiseSqrt()).asDiagonal() *
          momentum.transpose();
@@ -62,6 +66,10 @@ FlexibleBody::FlexibleBody(System& system, std::string name, const FlexibleModel
 }
 
 FlexibleBody& FlexibleBody::operator=(const Frame& floating) {
+  if (const MotionTree* const tree = MotionTree::current(); tree && tree->is_in_trial())
+    throw ModelError(fmt::format(
+        "flexible body \"{}\" is placed inside the equations of a loop: place it after the loop is solved",
+        name_));
   frame_ = floating;
   is_placed_ = true;
   for (std::size_t j = 0; j < eta_.size(); ++j) {
@@ -75,6 +83,8 @@ FlexibleBody& FlexibleBody::operator=(const Frame& floating) {
 }
 
 Frame FlexibleBody::node(int i) const {
+  if (!is_placed_)
+    throw ModelError(fmt::format("flexible body \"{}\" is used before positions() places it", name_));
   if (i < 0 || i >= model_.node_count())
     throw ModelError(
         fmt::format("flexible body \"{}\": node {}, must be 0 to {}", name_, i, model_.node_count() - 1));

@@ -17,6 +17,8 @@ MotionTree& current_tree() {
 }  // namespace
 
 Frame Frame::followed_by(const Motion& motion) const {
+  if (tree_ && MotionTree::current() && tree_ != MotionTree::current())
+    throw ModelError("a motion follows a frame of another system: frames join within one system only");
   const Vector x(&R_(0, 0)), y(&R_(0, 1)), z(&R_(0, 2));
   Frame result(*this);
   const auto turn_about = [&](const Vector& axis_0) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "easydyn/error.hpp"
@@ -32,6 +33,21 @@ void LoopClosure::set_guess(std::span<const double> guess) {
   orientation_ = 0;
 }
 
+void LoopClosure::write_guess(double* memory) const {
+  std::copy_n(guess_.data(), n_, memory);
+  memory[n_] = 0;
+}
+
+void LoopClosure::write_memory(double* memory) const {
+  std::copy_n(p_.data(), n_, memory);
+  memory[n_] = orientation_;
+}
+
+void LoopClosure::read_memory(const double* memory) {
+  std::copy_n(memory, n_, p_.data());
+  orientation_ = static_cast<int>(memory[n_]);
+}
+
 void LoopClosure::begin(double t) {
   t_ = t;
   start_ = p_;
@@ -49,9 +65,10 @@ Expr LoopClosure::solution(int i) const {
   return Expr::of_parts(p_[i], rate_[i], bias_[i], gradients_[static_cast<std::size_t>(i)]);
 }
 
-void LoopClosure::fail(const std::string& what) const {
+void LoopClosure::fail(const std::string& what) {
   std::string values;
   for (int i = 0; i < n_; ++i) values += fmt::format("{}{:.6g}", i ? ", " : "", p_[i]);
+  p_ = start_;  // the last good solution
   throw SolverError(fmt::format("loop \"{}\" of system \"{}\" {} at t = {} s; its unknowns are ({})", name_,
                                 system_, what, t_, values));
 }
@@ -112,23 +129,21 @@ bool LoopClosure::take(std::span<const Expr> equations) {
     return true;
   }
 
-  if (!std::isfinite(norm)) fail("has equations that are not finite");
   const bool is_rounding = norm < 1e-12 * (1 + scale_);
   if (phase_ == Phase::line_search && !(norm <= last_norm_) && !is_rounding && halvings_ < max_halvings) {
-    // Too far: half the step.
+    // Too far (or out of the domain of a function): half the step.
     ++halvings_;
     step_ *= 0.5;
     p_ -= step_;
     return false;
   }
+  if (!std::isfinite(norm)) fail("has equations that are not finite");
 
   decompose(equations);
   last_norm_ = norm;
   halvings_ = 0;
-  if (++iterations_ > max_iterations) {
-    p_ = guess_;
+  if (++iterations_ > max_iterations)
     fail(fmt::format("cannot be closed: residual {:.3g} after {} iterations", norm, max_iterations));
-  }
   right_ = -residual_;
   solve_least_squares(right_, step_);
 
@@ -149,10 +164,8 @@ bool LoopClosure::take(std::span<const Expr> equations) {
                     "coordinates",
                     qr_.rank(), n_));
   const int orientation = compute_orientation();
-  if (orientation_ * orientation < 0) {
-    p_ = start_;
+  if (orientation_ * orientation < 0)
     fail("has passed a dead point or left its branch since the last solution");
-  }
   orientation_ = orientation;
 
   // Rates, and the gradients in the coordinates: dp/dq = -J^+ dg/dq.

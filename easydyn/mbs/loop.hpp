@@ -20,8 +20,13 @@ class LoopClosure {
   /// @param first  index of the first unknown in gradients, beyond all coordinates
   LoopClosure(std::string system, std::string name, std::span<const double> guess, int first);
 
-  /// Where the next Newton iteration starts: the branch that it keeps to.
+  /// Where the solution for the initial state starts: which branch.
   void set_guess(std::span<const double> guess);
+  /// Entries in State::loops: the unknowns and the sign of the branch.
+  int memory_size() const { return n_ + 1; }
+  void write_guess(double* memory) const;   ///< of the initial state
+  void write_memory(double* memory) const;  ///< of the last solution
+  void read_memory(const double* memory);   ///< the next solution starts from here
   std::span<const double> values() const { return {p_.data(), static_cast<std::size_t>(p_.size())}; }
   const std::string& name() const { return name_; }
 
@@ -40,7 +45,7 @@ class LoopClosure {
   template <class X>
   void solve_least_squares(Eigen::VectorXd& right, X&& x);
   int compute_orientation() const;
-  [[noreturn]] void fail(const std::string& what) const;
+  [[noreturn]] void fail(const std::string& what);
 
   std::string system_, name_;
   int n_, first_;
@@ -66,8 +71,10 @@ class LoopClosure {
 ///       });
 ///       ...
 ///
-/// Newton's iteration starts from the last solution, so that the branch is kept by continuity. Rates, biases and
-/// gradients follow from the implicit function theorem:
+/// Newton's iteration starts from the unknowns that the State carries, those of the last accepted step: the branch is
+/// kept by continuity, and a state means the same whatever was evaluated before. Who moves a mechanism by hand, state by
+/// state, calls `System::update_loops` after each evaluation. Rates, biases and gradients follow from the implicit
+/// function theorem:
 ///
 ///   J p. = -g.(p. = 0)      J p.. = -g..(p.. = 0)      J dp/dq = -dg/dq      J = dg/dp
 ///
@@ -89,7 +96,7 @@ class Loop {
   template <class Equations>
   std::array<Expr, N> solve(const Equations& equations);
 
-  /// Starts the next iteration from here.
+  /// Where the solution for the initial state starts.
   void set_guess(const std::array<double, N>& guess) { closure_->set_guess(guess); }
   double value(int i) const { return closure_->values()[static_cast<std::size_t>(i)]; }
 
@@ -108,6 +115,7 @@ template <class Equations>
 std::array<Expr, N> Loop<N>::solve(const Equations& equations) {
   MotionTree* const tree = MotionTree::current();
   const int motions = tree ? tree->size() : 0;
+  const MotionTree::Trial trial(tree);
   closure_->begin(tree ? tree->time() : 0);
   for (bool is_solved = false; !is_solved;) {
     std::array<Expr, N> p;

@@ -28,7 +28,8 @@ void MotionTree::clear(double t) {
   deformable_.clear();
   gravity_ = mass_moment_ = {};
   energy_ = {};
-  velocities_known_ = false;
+  velocities_known_ = accelerations_known_ = false;
+  trials_ = 0;
 }
 
 void MotionTree::shrink_to(int size) {
@@ -144,6 +145,7 @@ void MotionTree::compute_velocities() {
 }
 
 void MotionTree::compute_accelerations(const double* qdd) {
+  accelerations_known_ = true;
   qdd_ = qdd;
   for (int i = 0; i < size_; ++i) {
     const Joint& joint = joints_[static_cast<std::size_t>(i)];
@@ -349,6 +351,9 @@ Vector3d MotionTree::velocity_at(int motion, const Vector3d& p) const {
 }
 
 Vector3d MotionTree::acceleration_at(int motion, const Vector3d& p) const {
+  if (!accelerations_known_)
+    throw ModelError(
+        "accelerations are known after an evaluation, not in forces(): give the output a function instead");
   return acceleration_of(motion, Vector(p));
 }
 

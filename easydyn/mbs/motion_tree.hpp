@@ -52,6 +52,22 @@ class MotionTree {
     MotionTree* previous_;
   };
 
+  /// While a loop tries its unknowns, bodies must not be placed: motions of a trial do not stay.
+  class Trial {
+   public:
+    explicit Trial(MotionTree* tree) : tree_(tree) {
+      if (tree_) ++tree_->trials_;
+    }
+    ~Trial() {
+      if (tree_) --tree_->trials_;
+    }
+    Trial(const Trial&) = delete;
+
+   private:
+    MotionTree* tree_;
+  };
+  bool is_in_trial() const { return trials_ > 0; }
+
   void clear(double t = 0);
   double time() const { return t_; }  ///< [s] of the evaluation
   int add_rotation(int parent, const spatial::Vector& axis_0, const spatial::Vector& p_0, const Expr& angle);
@@ -181,7 +197,8 @@ class MotionTree {
   const double* qdd_ = nullptr;                         // of the last accelerations
   Eigen::VectorXd shape_accelerations_, shape_forces_;  // scratch
   Eigen::MatrixXd jacobian_, mass_jacobian_;            // scratch
-  bool velocities_known_ = false;
+  int trials_ = 0;
+  bool velocities_known_ = false, accelerations_known_ = false;
   EnergyAccounts energy_;
 };
 

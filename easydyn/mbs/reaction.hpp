@@ -17,7 +17,7 @@ class System;
 ///     system.compute_reactions(integrator.state());
 ///     bearing.force();
 ///
-/// Six held coordinates move what follows the cut; the generalised forces that hold them are the reaction. This is
+/// Each reaction is cut once, in positions(). Six held coordinates move what follows the cut; the generalised forces that hold them are the reaction. This is
 /// exact in closed loops, too, where the loop's equations are given by frames that contain the cut.
 class Reaction {
  public:
@@ -25,11 +25,13 @@ class Reaction {
   Frame cut(const Frame& frame) const;
 
   /// What the part before the cut exerts on the part after it, in the axes of the frame, at its origin.
+  /// @throws ModelError before System::compute_reactions
   const Eigen::Vector3d& force() const;   ///< [N]
   const Eigen::Vector3d& moment() const;  ///< [N m]
 
  private:
   friend class System;
+  void require_known() const;
   Reaction(System& system, int number) : system_(&system), number_(number) {}
   System* system_;
   int number_;

@@ -35,8 +35,11 @@ class Input {
   int index_;
 };
 
-/// A number that the system gives to the outside: a sensor, a measured force. forces() sets it at each evaluation;
-/// `linearize_state_space` gives the matrices of what it sees. Made by `System::output`.
+/// A number that the system gives to the outside: a sensor, a measured force. forces() sets it at each evaluation, or a
+/// function gives it once accelerations are known, too; `linearize_state_space` gives the matrices of what it sees.
+/// Made by `System::output`.
+///
+///     Output comfort = output("comfort", [this] { return car_body.acceleration().z(); });
 class Output {
  public:
   /// @throws ModelError outside forces()

@@ -14,6 +14,11 @@ struct State {
   Eigen::VectorXd x, xd;                ///< first-order states and their rates
   Eigen::VectorXd lambda;               ///< forces of the velocity constraints
   std::vector<Eigen::Matrix3d> charts;  ///< reference orientations of free motions (free_motion.hpp)
+  /// Unknowns of each closed loop near this state, and the sign of its branch (0: not yet known): where its solution
+  /// starts (loop.hpp).
+  Eigen::VectorXd loops;
+  /// Memory of HHT and generalised-alpha: pseudo accelerations of q and rates of x; empty: those of the state.
+  Eigen::VectorXd a, w;
 };
 
 /// Energies [J] and powers [W] at a state. Along a motion

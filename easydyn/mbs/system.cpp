@@ -13,9 +13,7 @@ System::System(std::string name) : name_(std::move(name)) {}
 System::~System() = default;
 
 Coordinate System::coordinate(std::string name, double initial, double initial_rate) {
-  for (const CoordinateData& c : coordinates_)
-    if (c.name == name)
-      throw ModelError(fmt::format("system \"{}\": there are two coordinates named \"{}\"", name_, name));
+  require_new_name(coordinates_, "coordinates", name);
   if (!std::isfinite(initial) || !std::isfinite(initial_rate))
     throw ModelError(fmt::format("coordinate \"{}\": initial value {} and rate {} must be finite", name,
                                  initial, initial_rate));
@@ -24,7 +22,28 @@ Coordinate System::coordinate(std::string name, double initial, double initial_r
   return Coordinate(*this, static_cast<int>(coordinates_.size()) - 1);
 }
 
+namespace {
+template <class Thing>
+const std::string& name_of(const Thing& thing) {
+  if constexpr (requires { thing.name(); }) {
+    return thing.name();
+  } else if constexpr (requires { thing->name(); }) {
+    return thing->name();
+  } else {
+    return thing.name;
+  }
+}
+}  // namespace
+
+template <class Things>
+void System::require_new_name(const Things& things, const char* kind, const std::string& name) const {
+  for (const auto& thing : things)
+    if (name_of(thing) == name)
+      throw ModelError(fmt::format("system \"{}\": there are two {} named \"{}\"", name_, kind, name));
+}
+
 void System::assign_slots() {
+  ++revision_;
   free_.clear();
   for (std::size_t i = 0; i < coordinates_.size(); ++i)
     if (!coordinates_[i].is_held) {
@@ -45,10 +64,14 @@ void System::assign_slots() {
 }
 
 VelocityConstraint& System::velocity_constraint(std::string name) {
+  require_new_name(constraints_, "velocity constraints", name);
+  ++revision_;
   return constraints_.emplace_back(std::move(name));
 }
 
 FirstOrderState System::first_order_state(std::string name, double initial) {
+  require_new_name(first_order_, "first-order states", name);
+  ++revision_;
   if (!std::isfinite(initial))
     throw ModelError(fmt::format("first-order state \"{}\": initial value {} must be finite", name, initial));
   first_order_.push_back({std::move(name), initial});
@@ -57,14 +80,17 @@ FirstOrderState System::first_order_state(std::string name, double initial) {
 }
 
 Input System::input(std::string name, double value) {
+  require_new_name(inputs_, "inputs", name);
   inputs_.push_back({std::move(name), 0});
   const Input input(*this, input_size() - 1);
   input.set(value);
   return input;
 }
 
-Output System::output(std::string name) {
+Output System::output(std::string name, std::function<double()> value) {
+  require_new_name(outputs_, "outputs", name);
   outputs_.push_back({std::move(name), 0});
+  output_functions_.push_back(std::move(value));
   return Output(*this, output_size() - 1);
 }
 
@@ -76,26 +102,30 @@ void System::set_input(int i, double value) {
 }
 
 Reaction System::reaction(std::string name) {
-  reactions_.push_back({std::move(name), 0, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()});
+  require_new_name(reactions_, "reactions", name);
+  reactions_.push_back({.name = std::move(name),
+                        .slot = 0,
+                        .force = Eigen::Vector3d::Zero(),
+                        .moment = Eigen::Vector3d::Zero()});
   assign_slots();
   return Reaction(*this, static_cast<int>(reactions_.size()) - 1);
 }
 
 Body& System::body(std::string name, const Inertia& inertia) {
+  require_new_name(bodies_, "bodies", name);
   return bodies_.emplace_back(std::move(name), inertia);
 }
 
 FlexibleBody& System::flexible_body(std::string name, const FlexibleModel& model, const ShapeOptions& shapes,
                                     double damping_ratio) {
+  require_new_name(flexible_bodies_, "flexible bodies", name);
   flexible_bodies_.push_back(
       std::unique_ptr<FlexibleBody>(new FlexibleBody(*this, std::move(name), model, shapes, damping_ratio)));
   return *flexible_bodies_.back();
 }
 
 std::shared_ptr<LoopClosure> System::add_loop(const std::string& name, std::span<const double> guess) {
-  for (const auto& loop : loops_)
-    if (loop->name() == name)
-      throw ModelError(fmt::format("system \"{}\": there are two loops named \"{}\"", name_, name));
+  require_new_name(loops_, "loops", name);
   constexpr int first_unknown = 1 << 24;  // in gradients, beyond all coordinates
   loops_.push_back(std::make_shared<LoopClosure>(name_, name, guess, first_unknown + loop_unknowns_));
   loop_unknowns_ += static_cast<int>(guess.size());
@@ -103,6 +133,8 @@ std::shared_ptr<LoopClosure> System::add_loop(const std::string& name, std::span
 }
 
 LinearStructure& System::structure(std::string name, SparseMatrix M, SparseMatrix C, SparseMatrix K) {
+  require_new_name(structures_, "structures", name);
+  ++revision_;
   structures_.push_back(
       std::make_unique<LinearStructure>(std::move(name), std::move(M), std::move(C), std::move(K)));
   return *structures_.back();
@@ -147,10 +179,26 @@ State System::initial_state() const {
   for (int i = 0; i < first_order_size(); ++i) state.x[i] = first_order_[static_cast<std::size_t>(i)].value;
   state.lambda = VectorXd::Zero(constraint_size());
   state.charts = initial_charts_;
+  state.loops.resize(loop_unknowns_ + static_cast<int>(loops_.size()));
+  double* memory = state.loops.data();
+  for (const auto& loop : loops_) {
+    loop->write_guess(memory);
+    memory += loop->memory_size();
+  }
   return state;
 }
 
+void System::update_loops(State& state) const {
+  double* memory = state.loops.data();
+  for (const auto& loop : loops_) {
+    loop->write_memory(memory);
+    memory += loop->memory_size();
+  }
+}
+
 void System::place(const BodyState& state, const PortMotionFunction& motion) {
+  if (q_)
+    throw ModelError(fmt::format("system \"{}\" is evaluated inside its own positions() or forces()", name_));
   // Coordinates and ports answer during the evaluation only, however it ends.
   struct Reset {
     System& s;
@@ -169,6 +217,13 @@ void System::place(const BodyState& state, const PortMotionFunction& motion) {
   port_motion_ = &motion;
   chart_pointer_ = state.charts ? state.charts : initial_charts_.data();
   if (slot_count_ > free_count_) fill_held(state);
+  if (state.loops) {
+    const double* memory = state.loops;
+    for (const auto& loop : loops_) {
+      loop->read_memory(memory);
+      memory += loop->memory_size();
+    }
+  }
 
   // Positions: the user's program builds the tree of motions.
   tree_.clear(t_);
@@ -240,9 +295,16 @@ void System::compute_body_residual(const BodyState& state, const PortMotionFunct
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
     VelocityConstraint& c = constraints_[i];
     c.lambda_ = state.lambda ? state.lambda[i] : 0.0;
-    for (const Gradient::Entry& a : c.row()) all[a.coordinate] -= a.value * c.lambda_;
+    double imposed = c.velocity();  // what of phi comes from time and held coordinates: there lambda works
+    for (const Gradient::Entry& a : c.row()) {
+      all[a.coordinate] -= a.value * c.lambda_;
+      if (a.coordinate < free_count_) imposed -= a.value * state.qd[a.coordinate];
+    }
+    tree_.energy().supplied -= c.lambda_ * imposed;
     *rest++ = c.velocity();
   }
+  for (std::size_t i = 0; i < outputs_.size(); ++i)
+    if (output_functions_[i]) outputs_[i].value = output_functions_[i]();
   if (has_held) std::copy_n(all, body_size(), r);
 }
 
@@ -258,8 +320,14 @@ void System::compute_reactions(const State& state) {
     explicit Open(bool& f) : flag(f) { flag = true; }
     ~Open() { flag = false; }
   } open(cuts_open_);
+  for (ReactionData& r : reactions_) r.cuts = 0;
   evaluate(state);
   for (ReactionData& r : reactions_) {
+    if (r.cuts != 1)
+      throw ModelError(
+          fmt::format("reaction \"{}\" of system \"{}\" is cut {} times in positions(), must be once", r.name,
+                      name_, r.cuts));
+    r.is_known = true;
     const auto slot = static_cast<std::size_t>(r.slot);
     r.force = Eigen::Vector3d::Map(&r_all_[slot]);
     r.moment = Eigen::Vector3d::Map(&r_all_[slot + 3]);
@@ -290,6 +358,10 @@ void System::check_size(const State& state) const {
   if (state.lambda.size() != constraint_size())
     throw ModelError(fmt::format("system \"{}\" has {} velocity constraints, the state has lambda {}", name_,
                                  constraint_size(), state.lambda.size()));
+  if (state.loops.size() != loop_unknowns_ + static_cast<int>(loops_.size()))
+    throw ModelError(fmt::format("system \"{}\" has {} unknowns of loops with their signs, the state has {}",
+                                 name_, loop_unknowns_ + static_cast<int>(loops_.size()),
+                                 state.loops.size()));
   if (state.charts.size() != initial_charts_.size())
     throw ModelError(fmt::format("system \"{}\" has {} free motions, the state has {} charts", name_,
                                  initial_charts_.size(), state.charts.size()));

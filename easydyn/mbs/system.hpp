@@ -58,7 +58,8 @@ class System {
   VelocityConstraint& velocity_constraint(std::string name);
   FirstOrderState first_order_state(std::string name, double initial = 0);
   Input input(std::string name, double value = 0);
-  Output output(std::string name);
+  /// @param value  given: evaluated after the accelerations; else forces() sets the output
+  Output output(std::string name, std::function<double()> value = {});
   Reaction reaction(std::string name);
   /// Declares the motion of a free body with its origin and orientation at the start.
   FreeMotion free_motion(const std::string& name, const Eigen::Vector3d& origin = Eigen::Vector3d::Zero(),
@@ -119,6 +120,7 @@ class System {
   /// Generalised force that holds a held coordinate, at the last evaluation [N, N m].
   double holding_force(const Coordinate& coordinate) const;
   /// Fills the reactions at a state with its accelerations (and lambda).
+  /// @throws ModelError naming a reaction that positions() does not cut exactly once
   void compute_reactions(const State& state);
   /// Places bodies and computes velocities, forces and accelerations at a state, so that `bodies()` answer.
   void evaluate(const State& state);
@@ -140,10 +142,11 @@ class System {
     const double *q, *qd, *qdd;
     const double *x = nullptr, *xd = nullptr, *lambda = nullptr;
     const Eigen::Matrix3d* charts = nullptr;  // null: those of the start
+    const double* loops = nullptr;            // null: from the last solution
   };
   static BodyState body_state(const State& s) {
-    return {s.t,        s.q.data(),  s.qd.data(),     s.qdd.data(),
-            s.x.data(), s.xd.data(), s.lambda.data(), s.charts.data()};
+    return {s.t,         s.q.data(),      s.qd.data(),     s.qdd.data(),  s.x.data(),
+            s.xd.data(), s.lambda.data(), s.charts.data(), s.loops.data()};
   }
   /// The equation_count() equations of everything but structures, with port motions given by `motion`:
   /// residual r - A^T lambda of the bodies' coordinates, x. - f, velocities phi of the constraints.
@@ -152,6 +155,10 @@ class System {
   /// it. @param pseudo_accelerations  converted as qdd is; may be null
   /// @returns whether a chart has changed
   bool update_charts(State& state, Eigen::VectorXd* pseudo_accelerations = nullptr) const;
+  /// For solvers, after an evaluation near the state: the next solution of its loops starts from the last one.
+  void update_loops(State& state) const;
+  /// For solvers: changes when coordinates are declared, held or released.
+  int revision() const { return revision_; }
   /// Ports touched in the last evaluation, in order.
   const std::vector<PortRecord>& ports() const { return ports_; }
 
@@ -191,13 +198,17 @@ class System {
   };
   struct ReactionData {
     std::string name;
-    int slot;  // of the first of six held coordinates
+    int slot;              // of the first of six held coordinates
+    mutable int cuts = 0;  // in the present evaluation
     Eigen::Vector3d force, moment;
+    bool is_known = false;
   };
   const CoordinateData& data_of(const Coordinate& c) const {
     return coordinates_[static_cast<std::size_t>(c.number_)];
   }
   void assign_slots();
+  template <class Things>
+  void require_new_name(const Things& things, const char* kind, const std::string& name) const;
   void place(const BodyState& state, const PortMotionFunction& motion);
   void fill_held(const BodyState& state);
   PortMotionFunction motion_of(const State& state) const;
@@ -211,6 +222,8 @@ class System {
   std::vector<int> free_;  // numbers of the free coordinates, by slot
   int free_count_ = 0, slot_count_ = 0;
   std::vector<NamedValue> first_order_, inputs_, outputs_;
+  std::vector<std::function<double()>> output_functions_;
+  int revision_ = 0;
   struct GeneralizedForce {
     int slot;
     double Q;

@@ -9,6 +9,7 @@
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <sundials/sundials_context.hpp>
@@ -56,28 +57,44 @@ struct AdaptiveIntegrator::Backend {
         n(system_.size()),
         nx(system_.first_order_size()),
         nc(has_lambda ? system_.constraint_size() : 0),
-        y(N_VNew_Serial(2 * n + nx + nc, context)) {
+        y(N_VNew_Serial(std::max(1, 2 * n + nx + nc),
+                        context)) {  // one entry without meaning where nothing is unknown
+    N_VConst(0, y);
     pack(start, y);
   }
   virtual ~Backend() { N_VDestroy(y); }
 
-  void pack(const State& s, N_Vector to) const { view(to) << s.q, s.qd, s.x, s.lambda.head(nc); }
+  bool is_empty() const { return 2 * n + nx + nc == 0; }
+  void pack(const State& s, N_Vector to) const {
+    auto v = view(to);
+    v.head(n) = s.q;
+    v.segment(n, n) = s.qd;
+    v.segment(2 * n, nx) = s.x;
+    v.segment(2 * n + nx, nc) = s.lambda.head(nc);
+  }
   void unpack(double t, N_Vector from, State& s) const {
     const auto v = view(from);
     s.t = t;
     s.q = v.head(n);
     s.qd = v.segment(n, n);
     s.x = v.segment(2 * n, nx);
-    if (nc > 0) s.lambda = v.tail(nc);
+    if (nc > 0) s.lambda = v.segment(2 * n + nx, nc);
   }
   /// y' = (qd, qdd, f). 0, or -1 with the exception kept.
   int rates(double t, N_Vector at, N_Vector rate) noexcept {
     try {
       unpack(t, at, scratch);
       accelerations.solve(scratch);
-      view(rate) << scratch.qd, scratch.qdd, scratch.xd;
+      auto v = view(rate);
+      v.setZero();
+      v.head(n) = scratch.qd;
+      v.segment(n, n) = scratch.qdd;
+      v.segment(2 * n, nx) = scratch.xd;
       ++evaluations;
-      return view(rate).allFinite() ? 0 : 1;
+      return v.allFinite() ? 0 : give_up_trial(rate);
+    } catch (const SolverError&) {  // a trial beyond what the system can do: a smaller step may pass
+      beyond = std::current_exception();
+      return give_up_trial(rate);
     } catch (...) {
       thrown = std::current_exception();
       return -1;
@@ -94,6 +111,8 @@ struct AdaptiveIntegrator::Backend {
     }
   }
 
+  /// Makes the library try a smaller step.
+  virtual int give_up_trial(N_Vector) { return 1; }
   virtual const char* name() const = 0;
   virtual void set_stop_time(double t) = 0;
   virtual int one_step(double t_end, double& t) = 0;  // the library's flag
@@ -113,10 +132,10 @@ struct AdaptiveIntegrator::Backend {
   int n, nx, nc;
   N_Vector y;
   std::vector<Event> watched;
-  std::exception_ptr thrown;
+  std::exception_ptr thrown, beyond;  // an error that ends the run; the last one of a trial
   long steps = 0, evaluations = 0;
   double step_start = 0;
-  bool has_started = false;
+  bool has_started = false, has_stop_time = false;
 };
 
 AdaptiveIntegrator::AdaptiveIntegrator(System& system, State state) : Integrator(system, std::move(state)) {}
@@ -127,6 +146,8 @@ State AdaptiveIntegrator::consistent(System& system, State state) {
   AccelerationSolver solver(system);
   solver.project_velocities(state);
   solver.solve(state);
+  system.update_loops(state);
+  set_consistent_accelerations(system, state);  // refuses what is not finite
   return state;
 }
 
@@ -155,11 +176,21 @@ bool AdaptiveIntegrator::take_step(double t_end, bool is_watched) {
     }
     b.has_started = true;
   }
+  if (inputs_have_changed()) {
+    b.accelerations.solve(state_);
+    is_complete_ = true;
+    b.pack(state_, b.y);
+    b.restart(state_);
+    if (b.has_stop_time) b.set_stop_time(t_end);
+  }
+  if (b.is_empty()) return take_empty_step(t_end);
   double t = state_.t;
   const int flag = b.one_step(t_end, t);
   const std::exception_ptr thrown = std::exchange(b.thrown, nullptr);
   if (flag < 0) complete_state();  // the last good one, which the caller may look at
   if (thrown) std::rethrow_exception(thrown);
+  const std::exception_ptr beyond = std::exchange(b.beyond, nullptr);
+  if (flag < 0 && beyond) std::rethrow_exception(beyond);
   if (flag < 0)
     throw SolverError(
         fmt::format("{}: {} at t = {} s with step {:.3g} s; is the motion smooth, and are the "
@@ -171,6 +202,8 @@ bool AdaptiveIntegrator::take_step(double t_end, bool is_watched) {
   is_complete_ = false;
   const bool has_new_chart = system_.update_charts(state_);
   if (has_new_chart || is_watched || b.is_root(flag) || state_.t >= t_end) complete_state();
+  system_.update_loops(state_);
+  b.scratch.loops = state_.loops;
   if (has_new_chart) {
     b.scratch.charts = state_.charts;
     b.pack(state_, b.y);
@@ -191,13 +224,26 @@ bool AdaptiveIntegrator::take_step(double t_end, bool is_watched) {
   return stops;
 }
 
+// Where everything moves as given, only the time goes on.
+bool AdaptiveIntegrator::take_empty_step(double t_end) {
+  const AdaptiveOptions& o = backend_->options;
+  state_.t = std::min(t_end, state_.t + (o.max_step > 0 ? o.max_step : 1e-2));
+  system_.evaluate(state_);
+  system_.update_loops(state_);
+  is_complete_ = true;
+  ++backend_->steps;
+  return false;
+}
+
 void AdaptiveIntegrator::step() {
   take_step(state_.t + 1e6, true);
 }
 
 void AdaptiveIntegrator::advance(double t_end, const Watcher& after_each_step) {
+  check_end(t_end);
   while (state_.t < t_end) {
     backend_->set_stop_time(t_end);
+    backend_->has_stop_time = true;
     const bool stops = take_step(t_end, static_cast<bool>(after_each_step));
     if (after_each_step) after_each_step(state_);
     if (stops) return;
@@ -252,6 +298,11 @@ struct AdaptiveIntegrator::RungeKuttaBackend : Backend {
     if (o.max_step > 0) ERKStepSetMaxStep(memory, o.max_step);
   }
   ~RungeKuttaBackend() override { ERKStepFree(&memory); }
+  // ERKStep takes any flag for final; an error estimate beyond all bounds makes it try again.
+  int give_up_trial(N_Vector rate) override {
+    N_VConst(1e30, rate);
+    return has_started ? 0 : 1;
+  }
   const char* name() const override { return "RungeKutta"; }
   void set_stop_time(double t) override { ERKStepSetStopTime(memory, t); }
   int one_step(double t_end, double& t) override { return ERKStepEvolve(memory, t_end, y, &t, ARK_ONE_STEP); }
@@ -398,10 +449,13 @@ struct AdaptiveIntegrator::IdaBackend : Backend {
       for (const VelocityConstraint& c : system.velocity_constraints()) {
         double acceleration = c.bias();
         for (const Gradient::Entry& a : c.row())
-          if (a.coordinate < n) acceleration += a.value * scratch.qdd[a.coordinate];
+          if (a.coordinate < system.body_size()) acceleration += a.value * scratch.qdd[a.coordinate];
         f[row++] = acceleration;
       }
       return f.allFinite() ? 0 : 1;
+    } catch (const SolverError&) {
+      beyond = std::current_exception();
+      return 1;
     } catch (...) {
       thrown = std::current_exception();
       return -1;

@@ -68,6 +68,7 @@ class AdaptiveIntegrator : public Integrator {
  private:
   /// Accelerations, rates and constraint forces of the new state are left for later if nobody is going to look at them.
   /// True: an event stops.
+  bool take_empty_step(double t_end);
   bool take_step(double t_end, bool is_watched);
   void complete_state();
   std::vector<EventRecord> events_;

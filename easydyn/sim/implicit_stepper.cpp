@@ -66,10 +66,10 @@ ImplicitStepper::ImplicitStepper(const char* method, const Coefficients& coeffic
   require_positive(options.max_step, "max_step [s]");
   require_positive(options.newton_tolerance, "newton_tolerance");
 
+  make_consistent();
   // The first evaluation tells how many ports there are, and their forces.
   system_.evaluate(state_);
-  a_ = state_.qdd;
-  w_ = state_.xd;
+  system_.update_loops(state_);
   last_change_ = VectorXd::Zero(n_first_);
   port_forces_.resize(static_cast<int>(system_.ports().size()));
   for (int p = 0; p < port_forces_.size(); ++p)
@@ -82,6 +82,26 @@ ImplicitStepper::ImplicitStepper(const char* method, const Coefficients& coeffic
 }
 
 ImplicitStepper::~ImplicitStepper() = default;
+
+// A state whose accelerations do not satisfy the equations of motion would swing about those that do, for ever.
+void ImplicitStepper::make_consistent() {
+  if (n_constraints_ > 0) AccelerationSolver(system_).project_velocities(state_);
+  State still = state_;
+  still.qdd.setZero();
+  still.xd.setZero();
+  still.lambda.setZero();
+  const double forces = system_.compute_residual(still).lpNorm<Eigen::Infinity>();
+  const double error = system_.compute_residual(state_).lpNorm<Eigen::Infinity>();
+  const double rate_error = n_first_ > 0 ? (state_.xd - system_.first_order_rates()).norm() : 0;
+  // 1e-6 of the forces: a state that another run, or a quasi-static start, has left is taken as it is.
+  const bool is_consistent =
+      error <= 1e-6 * std::max(forces, 1.0) && rate_error <= 1e-6 * (1 + state_.xd.norm());
+  if (!is_consistent || n_constraints_ > 0) set_consistent_accelerations(system_, state_);
+  const bool has_memory =
+      is_consistent && state_.a.size() == state_.qdd.size() && state_.w.size() == n_first_;
+  a_ = has_memory ? state_.a : state_.qdd;
+  w_ = has_memory ? state_.w : state_.xd;
+}
 
 void ImplicitStepper::take_initial_unknowns(VectorXd& z) const {
   z.resize(system_.equation_count() + port_forces_.size());
@@ -114,6 +134,7 @@ void ImplicitStepper::evaluate(const VectorXd& z, State& next, VectorXd& residua
       System::body_state(next),
       [this](int k, const PortShape& shape) { return condensation_->motion(k, shape, forces_); },
       residual.data());
+  system_.update_loops(next);  // the next trial starts from here
   ++statistics_.evaluations;
   if (static_cast<int>(system_.ports().size()) != forces_.size())
     throw ModelError(
@@ -189,7 +210,7 @@ bool ImplicitStepper::try_step(double h, State& next) {
     if (!jacobian_known_) compute_jacobian(z, next);
     correction_ = jacobian_.solve(residual_);
     z -= correction_;
-    const double size = correction_.cwiseAbs().cwiseQuotient(scale_).maxCoeff();
+    const double size = z.size() > 0 ? correction_.cwiseAbs().cwiseQuotient(scale_).maxCoeff() : 0.0;
     if (!std::isfinite(size)) return false;
     const bool stalled_at_roundoff =
         size < 1e-3 * std::sqrt(options_.newton_tolerance) && size >= 0.5 * previous;
@@ -231,10 +252,27 @@ double ImplicitStepper::local_error(const State& next, double h) const {
 }
 
 void ImplicitStepper::step() {
+  if (inputs_have_changed()) {
+    set_consistent_accelerations(system_, state_);
+    a_ = state_.qdd;
+    w_ = state_.xd;
+    jacobian_known_ = false;
+  }
   State& next = next_;
   for (;;) {
     forces_before_ = port_forces_;
-    const bool converged = try_step(h_, next);
+    bool converged = false;
+    if (options_.variable_step) {
+      try {
+        converged = try_step(h_, next);
+      } catch (const SolverError&) {  // a trial beyond what the system can do: a smaller step may pass
+        if (0.5 * h_ < options_.min_step) throw;
+        jacobian_known_ = false;
+        last_residual_ = std::numeric_limits<double>::infinity();
+      }
+    } else {
+      converged = try_step(h_, next);
+    }
     if (!options_.variable_step) {
       if (!converged)
         throw SolverError(
@@ -278,11 +316,16 @@ void ImplicitStepper::accept(State& next) {
   last_change_ = (next.xd - state_.xd) / h;
   state_ = std::move(next);
   if (system_.update_charts(state_, &a_)) jacobian_known_ = false;
+  if (m != 0 || f != 0) {
+    state_.a = a_;
+    state_.w = w_;
+  }
   scale_ = next_scale_;
   ++statistics_.steps;
 }
 
 void ImplicitStepper::advance(double t_end, const std::function<void(const State&)>& after_each_step) {
+  check_end(t_end);
   while (t_end - state_.t > 1e-6 * h_) {
     const double regular = h_;
     // A rest within a millionth of a step is the same step.

@@ -71,6 +71,7 @@ class ImplicitStepper : public Integrator {
 
  private:
   void take_initial_unknowns(Eigen::VectorXd& z) const;
+  void make_consistent();
   bool try_step(double h, State& next);  // false: Newton did not converge
   void accept(State& next);
   void prepare(double h);
@@ -111,7 +112,8 @@ class Newmark : public ImplicitStepper {
   /// Starts from the system's initial state with accelerations that satisfy the equations of motion.
   explicit Newmark(System& system, const StepperOptions& options = {})
       : Newmark(system, consistent_initial_state(system), options) {}
-  /// Starts from a given state, taken as it is (qdd included).
+  /// Starts from a given state. Accelerations that do not satisfy the equations of motion are replaced by those that do, and
+  /// velocities are projected on the velocity constraints.
   Newmark(System& system, State state, const StepperOptions& options = {})
       : ImplicitStepper("Newmark", {0, 0, 0.25, 0.5}, system, std::move(state), options) {}
 };

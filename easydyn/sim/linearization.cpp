@@ -14,6 +14,11 @@ using Eigen::VectorXd;
 Linearization linearize(System& system, const State& state, double difference) {
   if (!(difference > 0))
     throw ModelError(fmt::format("linearization: difference = {}, must be > 0", difference));
+  if (system.constraint_size() > 0)
+    throw ModelError(fmt::format(
+        "linearization: system \"{}\" has velocity constraints, which M, C and K cannot hold: use "
+        "linearize_state_space",
+        system.name()));
   const int n = system.size();
   Linearization lin{system.compute_mass_matrix(state), MatrixXd(n, n), MatrixXd(n, n)};
 

@@ -8,11 +8,12 @@ namespace easydyn {
 
 struct ModeSceneOptions {
   double amplitude = 0.1;  ///< of the coordinate that moves most [m or rad], > 0
-  double duration = 2;     ///< of one period on the screen [s], > 0; the picture repeats it
+  double duration = 2;     ///< of one period on the screen [s], > 0
   int times = 48;          ///< pictures per period, >= 2
+  int periods = 5;         ///< shown, >= 1
 };
 
-/// A mode as an animated scene, one period long:
+/// A mode as an animated scene:
 ///
 ///   q = q_0 + amplitude Re(shape exp(i phase))        phase 0 ... 2 pi
 ///

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "easydyn/error.hpp"
+#include "easydyn/sim/balance.hpp"
 #include "easydyn/sim/state_space.hpp"
 
 namespace easydyn {
@@ -28,29 +29,6 @@ Mode make_mode(std::complex<double> pole, VectorXcd shape) {
     shape.setZero();
   }
   return {pole, w / two_pi, w > 0 ? -pole.real() / w : 0.0, std::move(shape)};
-}
-
-// Scales rows and columns by powers of two so that both have like norms: entries in pascal beside some in metre would
-// drown in each other's rounding. Returns the scales; an eigenvector of the scaled matrix times them is one of A.
-// Reference: B. N. Parlett, C. Reinsch, Numer. Math. 13, 1969, algorithm "balance".
-Eigen::VectorXd balance(MatrixXd& A) {
-  const Eigen::Index n = A.rows();
-  Eigen::VectorXd scales = Eigen::VectorXd::Ones(n);
-  for (bool has_changed = true; has_changed;) {
-    has_changed = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double diagonal = std::abs(A(i, i)), column = A.col(i).lpNorm<1>() - diagonal,
-                   row = A.row(i).lpNorm<1>() - diagonal;
-      if (!(column > 0) || !(row > 0)) continue;
-      const double f = std::exp2(std::round(0.5 * std::log2(row / column)));
-      if (column * f + row / f >= 0.95 * (column + row)) continue;
-      A.col(i) *= f;
-      A.row(i) /= f;
-      scales[i] *= f;
-      has_changed = true;
-    }
-  }
-  return scales;
 }
 
 // One mode per pair of complex eigenvalues, one per real one; the first n entries are the coordinates.
@@ -94,7 +72,10 @@ std::vector<Mode> compute_modes(const Linearization& lin) {
     if (eigen.info() != Eigen::Success) throw SolverError("modes: the mass matrix is not positive definite");
     for (Eigen::Index i = 0; i < n; ++i) {
       const std::complex<double> pole = std::sqrt(std::complex<double>(-eigen.eigenvalues()[i], 0));
-      modes.push_back(make_mode(pole, eigen.eigenvectors().col(i).cast<std::complex<double>>()));
+      const VectorXcd shape = eigen.eigenvectors().col(i).cast<std::complex<double>>();
+      modes.push_back(make_mode(pole, shape));
+      if (pole.imag() == 0 && pole.real() > 0)
+        modes.push_back(make_mode(-pole, shape));  // grows, and its mirror decays
     }
   } else {
     const Eigen::FullPivLU<MatrixXd> M(lin.M);

@@ -27,7 +27,9 @@ class Reader {
     std::string line;
     ++line_;
     if (!std::getline(file_, line)) fail(fmt::format("the file ends before \"{}\": is it complete?", word));
-    if (line.compare(0, word.size(), word) != 0) fail(fmt::format("\"{}\" expected, not \"{}\"", word, line));
+    const bool is_whole = word.empty() || word.back() == ' ' || line == word;
+    if (line.compare(0, word.size(), word) != 0 || !is_whole)
+      fail(fmt::format("\"{}\" expected, not \"{}\"", word, line));
     rest_ = std::istringstream(line.substr(word.size()));
   }
   double number() {
@@ -51,6 +53,12 @@ class Reader {
     int found = -1;
     rest_ >> found;
     if (found != count) fail(fmt::format("{} where the system has {}", found, count));
+  }
+  int one_of(int a, int b) {
+    int found = -1;
+    rest_ >> found;
+    if (found != a && found != b) fail(fmt::format("{} where the system has {}", found, b));
+    return found;
   }
   [[noreturn]] void fail(const std::string& what) const {
     throw InputError(fmt::format("{}:{}: {}", path_.string(), line_, what));
@@ -86,6 +94,17 @@ void write_state(const std::filesystem::path& path, System& system, const State&
     for (Eigen::Index i = 0; i < 9; ++i) text += fmt::format(" {:a}", R(i / 3, i % 3));
     text += "\n";
   }
+  const auto write_numbers = [&text](const char* word, const Eigen::VectorXd& v) {
+    text += fmt::format("{} {}", word, v.size());
+    for (const double number : v) text += fmt::format(" {:a}", number);
+    text += "\n";
+  };
+  write_numbers("loops", state.loops);
+  write_numbers("pseudo accelerations", state.a);
+  write_numbers("pseudo rates", state.w);
+  text += fmt::format("inputs {}\n", system.input_size());
+  for (int i = 0; i < system.input_size(); ++i)
+    text += fmt::format("u {:a} {}\n", system.input_value(i), system.input_name(i));
   text += "end\n";
 
   results::PendingFile pending(path);
@@ -134,7 +153,25 @@ State read_state(const std::filesystem::path& path, System& system) {
     in.expect("R ");
     for (Eigen::Index i = 0; i < 9; ++i) R(i / 3, i % 3) = in.number();
   }
+  in.expect("loops ");
+  in.expect_count(static_cast<int>(state.loops.size()));
+  for (double& number : state.loops) number = in.number();
+  in.expect("pseudo accelerations ");
+  state.a.resize(in.one_of(0, system.size()));
+  for (double& number : state.a) number = in.number();
+  in.expect("pseudo rates ");
+  state.w.resize(in.one_of(0, system.first_order_size()));
+  for (double& number : state.w) number = in.number();
+  in.expect("inputs ");
+  in.expect_count(system.input_size());
+  std::vector<double> inputs;
+  for (int i = 0; i < system.input_size(); ++i) {
+    in.expect("u ");
+    inputs.push_back(in.number());
+    in.expect_name(system.input_name(i));
+  }
   in.expect("end");
+  for (int i = 0; i < system.input_size(); ++i) system.set_input(i, inputs[static_cast<std::size_t>(i)]);
   return state;
 }
 

@@ -12,8 +12,9 @@ namespace easydyn {
 ///     ...
 ///     Newmark integrator(system, read_state("settled.state", system));
 ///
-/// A one-step method goes on from it as it would have: the same up to the tolerance of its Newton iteration (whose
-/// matrix is new). Multistep methods start again at order one.
+/// Newmark, HHT and generalised-alpha go on from it as they would have, up to the tolerance of Newton's iteration (whose
+/// matrix is new) and with the step of their options; Runge-Kutta chooses its step again, multistep methods start at order
+/// one. The inputs of the system are saved, too, and set by reading.
 /// The file appears when it is complete. @throws InputError if it cannot be written
 void write_state(const std::filesystem::path& path, System& system, const State& state);
 

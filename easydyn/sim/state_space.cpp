@@ -8,6 +8,7 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/sim/accelerations.hpp"
+#include "easydyn/sim/balance.hpp"
 
 namespace easydyn {
 
@@ -68,14 +69,18 @@ StateSpace linearize_state_space(System& system, const State& state, double diff
 std::vector<MatrixXcd> compute_frequency_response(const StateSpace& space, const VectorXd& frequencies) {
   std::vector<MatrixXcd> responses;
   const Eigen::Index size = space.A.rows();
+  // Rows and columns of like norms: the rank is then decided whatever the units of the states.
+  MatrixXd A = space.A;
+  const VectorXd scales = balance(A);
+  const MatrixXcd B = (scales.cwiseInverse().asDiagonal() * space.B).cast<std::complex<double>>();
   for (const double f : frequencies) {
     if (!(f >= 0)) throw ModelError(fmt::format("frequency response: frequency = {} Hz, must be >= 0", f));
     const std::complex<double> iw(0, 2 * std::numbers::pi * f);
-    const MatrixXcd G = iw * MatrixXcd::Identity(size, size) - space.A;
+    const MatrixXcd G = iw * MatrixXcd::Identity(size, size) - A;
     const Eigen::FullPivLU<MatrixXcd> lu(G);
     if (!lu.isInvertible())
       throw SolverError(fmt::format("frequency response: {} Hz is the frequency of an undamped mode", f));
-    responses.push_back(lu.solve(space.B.cast<std::complex<double>>()));
+    responses.push_back(scales.asDiagonal() * lu.solve(B));
   }
   return responses;
 }

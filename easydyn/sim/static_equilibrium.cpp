@@ -6,6 +6,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
@@ -84,6 +86,7 @@ class StaticProblem {
     at.x = z.data() + n_;
     system_.compute_body_residual(
         at, [&](int k, const PortShape& shape) { return condensation_.motion(k, shape, F); }, r.data());
+    system_.update_loops(state_);
     for (int p = 0; p < n_ports_; ++p)
       r[n_ + n_first_ + p] = F[p] - system_.ports()[static_cast<std::size_t>(p)].force;
   }
@@ -116,6 +119,9 @@ class StaticProblem {
     return fmt::format("port force {}", i - n_ - n_first_);
   }
 
+  int coordinate_count() const { return n_; }
+  bool has_coordinates_only() const { return n_first_ == 0 && n_ports_ == 0; }
+
   std::exception_ptr thrown;  // by the user's program, inside KINSOL
 
  private:
@@ -131,6 +137,8 @@ int kinsol_residual(N_Vector z, N_Vector r, void* data) {
   VectorXd value(problem.size());
   try {
     problem.residual(z_copy, value);
+  } catch (const SolverError&) {  // a trial beyond what the system can do: a shorter step may pass
+    return 1;
   } catch (...) {
     problem.thrown = std::current_exception();
     return -1;
@@ -219,7 +227,8 @@ std::string solve_with_kinsol(StaticProblem& problem, VectorXd& z, double refere
   KINSetNumMaxIters(k.memory, options.max_iterations);
   KINSetFuncNormTol(k.memory, options.tolerance);
   KINSetScaledStepTol(k.memory, 1e-15);
-  KINSetMaxNewtonStep(k.memory, 1e6);  // the default refuses to leave a guess at zero
+  // Turns and shifts of the order of 1: a longer step ends anywhere (the default refuses to leave a guess at zero).
+  KINSetMaxNewtonStep(k.memory, std::sqrt(double(n)));
   KINSetMaxSetupCalls(k.memory, 1);
   const int flag = KINSol(k.memory, k.z, KIN_LINESEARCH, k.z_scale, k.r_scale);
   if (problem.thrown) std::rethrow_exception(problem.thrown);
@@ -236,7 +245,7 @@ std::string solve_with_kinsol(StaticProblem& problem, VectorXd& z, double refere
 // residual falls (pseudo-transient continuation: Kelley & Keyes, SIAM J. Numer. Anal. 35, 1998). Slower than Newton, but
 // from far away, and never to an equilibrium that it would leave.
 bool relax(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
-  constexpr double first_move = 0.05;  // [m, rad]
+  constexpr double first_move = 0.05, largest_move = 0.5;  // [m, rad]
   const int n = problem.size();
   const VectorXd D = problem.inertia();
   VectorXd r(n), moved, r_moved(n);
@@ -246,12 +255,18 @@ bool relax(StaticProblem& problem, VectorXd& z, double reference, const StaticOp
     if (D[i] > 0) mu = std::max(mu, std::abs(r[i]) / (first_move * D[i]));
   for (int iteration = 0; iteration < 10 * options.max_iterations; ++iteration) {
     if (r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference) return true;
-    Eigen::MatrixXd J = difference_jacobian(problem, z);
-    J.diagonal() += mu * D;
-    moved = z - J.partialPivLu().solve(r);
-    if (moved.allFinite()) problem.residual(moved, r_moved);
-    if (!moved.allFinite() || !r_moved.allFinite()) {
-      mu *= 4;
+    const Eigen::MatrixXd J = difference_jacobian(problem, z);
+    // An implicit step that is too long would be drawn to where the system falls away from.
+    Eigen::MatrixXd A = J;
+    A.diagonal() += mu * D;
+    const Eigen::LLT<Eigen::MatrixXd> symmetric(0.5 * (A + A.transpose()));
+    const bool is_short_enough = !problem.has_coordinates_only() || symmetric.info() == Eigen::Success;
+    moved = z - A.partialPivLu().solve(r);
+    const bool is_near = moved.allFinite() &&
+                         ((moved - z).head(problem.coordinate_count()).array().abs() <= largest_move).all();
+    if (is_short_enough && is_near) problem.residual(moved, r_moved);
+    if (!is_short_enough || !is_near || !r_moved.allFinite()) {
+      mu = std::max(4 * mu, 1e-12);
       continue;
     }
     const double ratio = r_moved.norm() / std::max(r.norm(), 1e-300);
@@ -267,10 +282,13 @@ std::string polish(StaticProblem& problem, VectorXd& z, double reference, const 
   const int n = problem.size();
   VectorXd r(n), shifted, r_shifted(n);
   problem.residual(z, r);
+  bool is_rounding = false;  // of the unknowns: what is left of the forces comes from their last digits
   for (int iteration = 0; iteration < 10; ++iteration) {
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(difference_jacobian(problem, z));
     if (!lu.isInvertible()) return "the stiffness matrix is singular";
-    shifted = z - lu.solve(r);
+    const VectorXd correction = lu.solve(r);
+    is_rounding = (correction.array().abs() <= 1e-14 * (1 + z.array().abs())).all();
+    shifted = z - correction;
     problem.residual(shifted, r_shifted);
     const bool better = r_shifted.lpNorm<Eigen::Infinity>() < 0.5 * r.lpNorm<Eigen::Infinity>();
     if (r_shifted.lpNorm<Eigen::Infinity>() < r.lpNorm<Eigen::Infinity>()) {
@@ -279,16 +297,34 @@ std::string polish(StaticProblem& problem, VectorXd& z, double reference, const 
     }
     if (!better) break;
   }
-  return r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference ? "" : "the iteration does not settle";
+  return is_rounding || r.lpNorm<Eigen::Infinity>() <= options.tolerance * reference
+             ? ""
+             : "the iteration does not settle";
 }
 
-// Newton, and where it does not get through the way of heavy damping.
+// Whether the stiffness resists every small motion; where ports or first-order states take part that is not asked.
+bool is_stable(StaticProblem& problem, const VectorXd& z) {
+  if (!problem.has_coordinates_only()) return true;
+  const Eigen::MatrixXd J = difference_jacobian(problem, z);
+  const VectorXd stiffness =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(0.5 * (J + J.transpose()), Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  return stiffness[0] >= -1e-6 * stiffness.cwiseAbs().maxCoeff();
+}
+
+// Newton, and where it does not get through, or to an equilibrium that would not hold, the way of heavy damping.
 void settle(StaticProblem& problem, VectorXd& z, double reference, const StaticOptions& options) {
   const VectorXd start = z;
   std::string why = solve_with_kinsol(problem, z, reference, options);
   if (why.empty()) why = polish(problem, z, reference, options);
-  if (why.empty()) return;
   const VectorXd reached = z;
+  if (why.empty()) {
+    if (is_stable(problem, z)) return;
+    z = start;
+    if (!relax(problem, z, reference, options) || !polish(problem, z, reference, options).empty())
+      z = reached;
+    return;
+  }
   z = start;
   if (!is_held(problem, reached) || !relax(problem, z, reference, options) ||
       !polish(problem, z, reference, options).empty())

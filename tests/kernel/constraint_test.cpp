@@ -276,5 +276,77 @@ TEST(FirstOrderState, SettlesWithTheStaticEquilibrium) {
   EXPECT_NEAR(s.q[0], Motor::k * 12 / Motor::R / 5, 1e-9);
 }
 
+// A wheel is turned as given and drives a cart by rolling without slip.
+class DrivenCart : public System {
+ public:
+  Coordinate x = coordinate("x"), spin = coordinate("spin");
+  VelocityConstraint& no_slip = velocity_constraint("no slip");
+  Body& cart = body("cart", 4.0);
+  Body& wheel = body("wheel", Inertia(1, 0.5));
+  DrivenCart() {
+    spin.prescribe([](double t) { return ImposedMotion(t * t, 2 * t, 2); });
+  }
+
+ protected:
+  void positions() override {
+    cart = translate(x, 0, 0);
+    wheel = rotate_y(spin);
+    no_slip = {{1, Expr(x)}, {-0.5, Expr(spin)}};
+  }
+};
+
+TEST(VelocityConstraint, BringsInTheEnergyOfADrive) {
+  DrivenCart system;
+  State s = system.initial_state();
+  s.t = 1;
+  s.qd[0] = 1;  // x. = 0.5 * 2
+  set_consistent_accelerations(system, s);
+  EXPECT_NEAR(s.qdd[0], 1, 1e-12);
+  // d/dt (m x.^2 / 2) = 4 W for the cart, J w w. = 2 W for the wheel
+  const EnergyBalance e = system.compute_energy(s);
+  EXPECT_NEAR(e.supplied, 4 + 2, 1e-12);
+  EXPECT_NEAR(system.holding_force(system.spin) * 2, 6, 1e-12);
+}
+
+TEST(VelocityConstraint, HoldsInEveryIntegratorBesideAStructureAndAHeldCoordinate) {
+  class WithStructure : public DrivenCart {
+   public:
+    WithStructure() {
+      SparseMatrix one(2, 2);
+      one.setIdentity();
+      structure("block", one, one, 50 * one);
+    }
+  };
+  const auto x_of = [](auto make) {
+    WithStructure system;
+    auto integrator = make(system);
+    integrator.advance(0.5);
+    return integrator.state().q[0];
+  };
+  const AdaptiveOptions tight{.relative_tolerance = 1e-8, .absolute_tolerance = 1e-10};
+  EXPECT_NEAR(x_of([](System& s) { return Newmark(s, {.step = 1e-3}); }), 0.125, 1e-6);
+  EXPECT_NEAR(x_of([&](System& s) { return RungeKutta(s, tight); }), 0.125, 1e-7);
+  EXPECT_NEAR(x_of([&](System& s) { return Cvode(s, tight); }), 0.125, 1e-6);
+  EXPECT_NEAR(x_of([&](System& s) { return Ida(s, tight); }), 0.125, 1e-6);
+}
+
+TEST(VelocityConstraint, IsMetByTheRatesThatNewmarkStartsWith) {
+  class Wheel : public System {
+   public:
+    Coordinate x = coordinate("x", 0, 3.0), spin = coordinate("spin", 0, 1.0);
+    VelocityConstraint& no_slip = velocity_constraint("no slip");
+    Body& wheel = body("wheel", Inertia(2, 0.5));
+    void positions() override {
+      wheel = translate(x, 0, 0) * rotate_y(spin);
+      no_slip = {{1, Expr(x)}, {-0.5, Expr(spin)}};
+    }
+  } system;
+  Newmark newmark(system, {.step = 1e-2});
+  EXPECT_NEAR(newmark.state().qd[0], 0.5 * newmark.state().qd[1], 1e-12);
+  newmark.advance(0.1);
+  EXPECT_NEAR(newmark.state().lambda[0], 0, 1e-9);  // it rolls on without force
+  EXPECT_THROW(linearize(system, newmark.state()), ModelError);
+}
+
 }  // namespace
 }  // namespace easydyn

@@ -355,6 +355,21 @@ TEST(FlexibleModel, RefusesWhatIsNoFreeBody) {
   EXPECT_THROW(compute_shapes(model, {.clamped_nodes = {0}, .interface_dofs = {1}}), ModelError);
 }
 
+TEST(FlexibleBody, RefusesShapesThatMoveItAsARigidBody) {
+  class Loose : public System {
+   public:
+    Loose() {
+      std::vector<int> both_ends;
+      for (int i = 0; i < 6; ++i) both_ends.insert(both_ends.end(), {i, 12 + i});
+      flexible_body("beam", beam_model(steel(2)), {.interface_dofs = both_ends, .modes = 0});
+    }
+
+   protected:
+    void positions() override {}
+  };
+  EXPECT_THROW(Loose(), ModelError);
+}
+
 TEST(FlexibleModel, HasStaticShapesAtItsInterface) {
   const FlexibleModel model = beam_model(steel(4));
   const int tip_w = 4 * 6 + 2;

@@ -115,11 +115,13 @@ TEST(Loop, CarriesRateBiasAndGradientOfItsUnknowns) {
 
 TEST(Loop, KeepsItsBranchAndTakesTheGuessed) {
   FourBar up(0.4, 1.0, 0.8, 0.9, {0.3, 1.5}), down(0.4, 1.0, 0.8, 0.9, {-1.5, -2.5});
-  State s = up.initial_state();
+  State s_up = up.initial_state(), s_down = down.initial_state();
   for (double q = 1; q < 1 + 2 * M_PI + 0.01; q += 0.05) {
-    s.q[0] = q;
-    up.evaluate(s);
-    down.evaluate(s);
+    s_up.q[0] = s_down.q[0] = q;
+    up.evaluate(s_up);
+    up.update_loops(s_up);
+    down.evaluate(s_down);
+    down.update_loops(s_down);
     EXPECT_GT(std::sin(up.solution[1].value() - up.solution[0].value()), 0.1);
     EXPECT_LT(std::sin(down.solution[1].value() - down.solution[0].value()), -0.1);
   }
@@ -127,10 +129,10 @@ TEST(Loop, KeepsItsBranchAndTakesTheGuessed) {
 
 TEST(Loop, NamesItselfWhereItIsSingular) {
   FourBar parallelogram(1, 2, 1, 2, {0.0, 1.0});  // flat at q = 0: parallelogram and its crossed twin meet
-  State s = parallelogram.initial_state();
-  parallelogram.evaluate(s);
-  s.q[0] = 0;
+  parallelogram.evaluate(parallelogram.initial_state());
   parallelogram.closing.set_guess({0, 0});
+  State s = parallelogram.initial_state();
+  s.q[0] = 0;
   EXPECT_THAT(
       [&] { parallelogram.evaluate(s); },
       ThrowsMessage<SolverError>(
@@ -140,10 +142,11 @@ TEST(Loop, NamesItselfWhereItIsSingular) {
 TEST(Loop, RefusesToPassADeadPointUnseen) {
   // Newton's tangent would step over the flat position without touching it.
   FourBar parallelogram(1, 1, 1, 1, {0.0, 1.0});
-  State s = parallelogram.initial_state();
   parallelogram.closing.set_guess({0, 0.01});
+  State s = parallelogram.initial_state();
   s.q[0] = 0.01;
   parallelogram.evaluate(s);
+  parallelogram.update_loops(s);  // as an integrator does after a step
   s.q[0] = -0.008;
   EXPECT_THAT([&] { parallelogram.evaluate(s); },
               ThrowsMessage<SolverError>(
@@ -152,9 +155,53 @@ TEST(Loop, RefusesToPassADeadPointUnseen) {
   parallelogram.evaluate(s);
   EXPECT_NEAR(parallelogram.solution[1].value(), 0.01, 1e-12);
   parallelogram.closing.set_guess({0, -0.008});  // the user knows how it goes on
+  s = parallelogram.initial_state();
   s.q[0] = -0.008;
   parallelogram.evaluate(s);
   EXPECT_NEAR(parallelogram.solution[1].value(), -0.008, 1e-12);
+}
+
+// A drag link, whose dependent angles turn round and round: from the initial guess most states would close in another
+// turn or on the other branch.
+TEST(Loop, KeepsItsBranchAndTurnInAStateWhateverWasEvaluatedBefore) {
+  FourBar link(1, 0.9, 1.1, 0.3, {0.5, 1.0});
+  State s = link.initial_state();
+  s.qd[0] = 3;
+  RungeKutta integrator(link, s, {.relative_tolerance = 1e-8, .absolute_tolerance = 1e-8, .max_step = 0.02});
+  std::vector<State> states;
+  std::vector<double> rockers;
+  integrator.advance(4, [&](const State& now) {
+    states.push_back(now);
+    link.evaluate(now);
+    rockers.push_back(link.solution[1].value());
+  });
+  EXPECT_GT(std::abs(rockers.back() - rockers.front()), 4 * M_PI);
+  FourBar fresh(1, 0.9, 1.1, 0.3, {0.5, 1.0});
+  for (std::size_t i = states.size(); i-- > 0;) {  // backwards, to make it harder
+    fresh.evaluate(states[i]);
+    EXPECT_NEAR(fresh.solution[1].value(), rockers[i], 1e-10);
+  }
+  fresh.evaluate(fresh.initial_state());
+  const double first = fresh.solution[1].value();
+  link.evaluate(link.initial_state());  // after the run
+  EXPECT_EQ(link.solution[1].value(), first);
+}
+
+// Newton's step leaves the domain of the square root: it is halved, and a failure leaves no trace.
+TEST(Loop, ComesBackFromOutsideTheDomainOfAFunction) {
+  class Root : public System {
+   public:
+    Coordinate x = coordinate("x", 0.05);
+    Body& mass = body("mass", 1.0);
+    Loop<1> closing = loop<1>("root", {1.0});
+    void positions() override {
+      const auto [p] = closing.solve([&](const auto& u) { return std::array{sqrt(u[0]) - x}; });
+      mass = translate(p, 0, 0);
+    }
+  } system;
+  State s = system.initial_state();
+  system.evaluate(s);
+  EXPECT_NEAR(system.mass.position().x(), 0.0025, 1e-12);
 }
 
 TEST(Loop, NamesItselfWhereItCannotBeClosed) {

@@ -32,7 +32,8 @@ TEST(ModeScene, MovesTheBodiesAlongTheShapeForOnePeriod) {
   TwoMasses system;
   const State rest = system.initial_state();
   const std::vector<Mode> modes = compute_modes(linearize(system, rest));
-  const visu::Scene scene = mode_scene(system, rest, modes[0], {.amplitude = 0.2, .duration = 3, .times = 8});
+  const visu::Scene scene =
+      mode_scene(system, rest, modes[0], {.amplitude = 0.2, .duration = 3, .times = 8, .periods = 1});
   visu::check(scene);
   ASSERT_EQ(scene.time.size(), 9);
   EXPECT_EQ(scene.time[8], 3);
@@ -51,6 +52,7 @@ TEST(ModeScene, RefusesWhatCannotBeDrawn) {
   const Mode mode = compute_modes(linearize(system, rest))[0];
   EXPECT_THROW(mode_scene(system, rest, mode, {.amplitude = 0}), ModelError);
   EXPECT_THROW(mode_scene(system, rest, mode, {.times = 1}), ModelError);
+  EXPECT_THROW(mode_scene(system, rest, mode, {.periods = 0}), ModelError);
   Mode other = mode;
   other.shape.conservativeResize(1);
   EXPECT_THROW(mode_scene(system, rest, other), ModelError);

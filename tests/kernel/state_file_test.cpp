@@ -55,7 +55,7 @@ State moved_state(Everything& system) {
 
 bool same_bits(const State& a, const State& b) {
   return a.t == b.t && a.q == b.q && a.qd == b.qd && a.qdd == b.qdd && a.x == b.x && a.xd == b.xd &&
-         a.lambda == b.lambda && a.charts == b.charts;
+         a.lambda == b.lambda && a.charts == b.charts && a.loops == b.loops;
 }
 
 TEST(StateFile, GivesEveryBitBack) {
@@ -65,6 +65,60 @@ TEST(StateFile, GivesEveryBitBack) {
   TemporaryFolder folder;
   write_state(folder.path() / "a.state", system, s);
   EXPECT_TRUE(same_bits(read_state(folder.path() / "a.state", system), s));
+}
+
+TEST(StateFile, LetsMethodsWithAMemoryGoOn) {
+  const auto unbroken_and_restarted = [](auto make) {
+    TemporaryFolder folder;
+    Everything system;
+    auto integrator = make(system, system.initial_state());
+    integrator.advance(0.5);
+    write_state(folder.path() / "a.state", system, integrator.state());
+    integrator.advance(1.0);
+    Everything fresh;
+    auto restarted = make(fresh, read_state(folder.path() / "a.state", fresh));
+    restarted.advance(1.0);
+    return (integrator.state().q - restarted.state().q).norm();
+  };
+  // Newton stops at 1e-10 of the accelerations per step
+  EXPECT_LT(unbroken_and_restarted([](System& s, const State& from) { return Hht(s, from, {.step = 1e-2}); }),
+            1e-8);
+  EXPECT_LT(unbroken_and_restarted(
+                [](System& s, const State& from) { return GeneralizedAlpha(s, from, {.step = 1e-2}); }),
+            1e-8);
+}
+
+TEST(StateFile, BringsInputsAndLoopsBack) {
+  class Linkage : public System {
+   public:
+    Coordinate crank = coordinate("crank", 0.5, 5.0);
+    Input torque = input("torque", 3);
+    Loop<2> closing = loop<2>("four-bar", {0.5, 1.0});
+    Body& rocker = body("rocker", Inertia(1, 0.1));
+    double angle = 0;
+
+   protected:
+    void positions() override {
+      const auto p = closing.solve([&](const auto& u) {
+        return std::array{cos(crank) + 0.9 * cos(u[0]) - 1.1 * cos(u[1]) - 0.3,
+                          sin(crank) + 0.9 * sin(u[0]) - 1.1 * sin(u[1])};
+      });
+      rocker = rotate_z(p[1]);
+      angle = p[1].value();
+    }
+  } system;
+  RungeKutta integrator(system, {.max_step = 0.02});
+  integrator.advance(2);
+  system.evaluate(integrator.state());
+  const double angle = system.angle;
+  system.torque.set(7);
+  TemporaryFolder folder;
+  write_state(folder.path() / "a.state", system, integrator.state());
+  Linkage fresh;
+  const State s = read_state(folder.path() / "a.state", fresh);
+  fresh.evaluate(s);
+  EXPECT_NEAR(fresh.angle, angle, 1e-12);
+  EXPECT_EQ(fresh.torque.value(), 7);
 }
 
 TEST(StateFile, LetsARunGoOnAsFromMemory) {

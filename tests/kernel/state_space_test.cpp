@@ -131,6 +131,19 @@ TEST(FrequencyResponse, IsThatOfTheClosedForm) {
   }
 }
 
+TEST(FrequencyResponse, IsFoundWhateverTheUnitsOfTheStates) {
+  StateSpace space;
+  space.coordinates = 1;
+  space.A = Eigen::MatrixXd{{0, 1, 0, 0}, {-3, -0.1, 7e-6, -7e-6}, {0, -1.4e11, -20, 0}, {0, 1.4e11, 0, -20}};
+  space.B = Eigen::MatrixXd{{0}, {0}, {1e8}, {0}};
+  const auto H = compute_frequency_response(space, Eigen::VectorXd::Constant(1, 0.01));
+  const std::complex<double> s(0, 0.02 * M_PI);
+  const Eigen::MatrixXcd y = H[0];
+  const Eigen::MatrixXcd r = s * y - space.A * y - space.B.cast<std::complex<double>>();
+  EXPECT_LT(std::abs(r(1, 0)), 1e-9 * std::abs(7e-6 * y(2, 0)));
+  EXPECT_LT(std::abs(r(2, 0)), 1e-9 * 1e8);
+}
+
 TEST(FrequencyResponse, RefusesTheFrequencyOfAnUndampedMode) {
   const StateSpace oscillator{.A = Eigen::Matrix2d{{0, 1}, {-4 * M_PI * M_PI, 0}},
                               .B = Eigen::Vector2d(0, 1),
