@@ -68,13 +68,9 @@ class Bogie : public System {
   VerticalSpringDamper rear_spring_{"rear primary", k, d, z_frame - wheel_radius, mass* g / 2};
 };
 
-struct Amplitudes {
-  double bounce, pitch;
-};
-
 // 4. Closed form: the mean of the two wheels drives the bounce, their difference the pitch; each is one mass
-// on the springs, moved at its foot at w = 2 pi v / L.
-Amplitudes exact(double wavelength) {
+// on the springs, moved at its foot at w = 2 pi v / L. Amplitudes of bounce [m] and pitch [rad].
+Eigen::Vector2d exact(double wavelength) {
   const double w = 2 * pi * v / wavelength, phase = 2 * pi * a / wavelength;
   const std::complex<double> foot(2 * k, 2 * d * w);
   return {height * std::abs(std::cos(phase) * foot / (foot - mass * w * w)),
@@ -82,7 +78,7 @@ Amplitudes exact(double wavelength) {
 }
 
 // 5. Integration: four seconds let the start die away, the fifth is measured.
-Amplitudes simulate(Bogie& bogie, Recorder& recorder) {
+Eigen::Vector2d simulate(Bogie& bogie, Recorder& recorder) {
   Newmark newmark(bogie, {.step = 0.5 * ms});
   Eigen::Vector2d high(-1, -1), low(1, 1);
   newmark.advance(4);
@@ -92,7 +88,7 @@ Amplitudes simulate(Bogie& bogie, Recorder& recorder) {
     high = high.cwiseMax(state.q);
     low = low.cwiseMin(state.q);
   });
-  return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2};
+  return (high - low) / 2;
 }
 
 // 6. The look: heights ten times too large.
@@ -104,22 +100,17 @@ visu::Scene draw(const Recorder& recorder, double wavelength) {
   for (std::size_t b = 0; b < 3; ++b) scene.frames[b].rest = visu::Pose{{0, 0, rest_height[b]}};
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(601, 4 * v - 6, 5 * v + 6);
   const Eigen::VectorXd profile = height * (2 * pi / wavelength * x).array().cos();
+  const Eigen::MatrixXd rail = profile.transpose().replicate(scene.time.size(), 1);
   scene.items = {{"transom", "frame", box, {0.4, 2, 0.16}, "#4477aa", {{0, 0, 0.12}}}};
   for (const double side : {-1., 1.}) {
-    scene.lines.push_back(
-        {"rail", x, profile.transpose().replicate(scene.time.size(), 1), 0.75 * side, 0, 0.05});
+    scene.lines.push_back({"rail", x, rail, 0.75 * side, 0, 0.05});
     scene.items.push_back({"beam", "frame", box, {3.2, 0.12, 0.18}, "#4477aa", {{0, side, 0.12}}});
     for (const std::string name : {"front wheelset", "rear wheelset"}) {
-      const double place = name == "front wheelset" ? a : -a;
+      const visu::Anchor box_end{name, {0, side, 0}}, seat{"frame", {name[0] == 'f' ? a : -a, side, 0.05}};
       scene.items.push_back(
           {"wheel", name, cylinder, {wheel_radius, 0.12, 1}, "#555555", {{0, 0.75 * side, 0}}});
       scene.items.push_back({"axle", name, cylinder, {0.08, 1.05, 1}, "#777777", {{0, 0.525 * side, 0}}});
-      scene.links.push_back({"primary",
-                             {name, {0, side, 0}},
-                             {"frame", {place, side, 0.05}},
-                             visu::LinkShape::spring,
-                             0.07,
-                             "#bb5566"});
+      scene.links.push_back({"primary", box_end, seat, visu::LinkShape::spring, 0.07, "#bb5566"});
     }
   }
   scene.camera = {.target = {0, 0, 0.5}, .width = 7, .azimuth = -70, .elevation = 12, .follow = "frame"};
@@ -135,43 +126,39 @@ int main() try {
   fmt::print("pitch  {:.4f} Hz, closed form {:.4f} Hz\n", modes[1].frequency,
              std::sqrt(2 * k * a * a / J) / (2 * pi));
 
-  // 8. Steady vibration over many wavelengths.
+  // 8. Steady vibration over many wavelengths; amplitudes over that of the profile, the pitch times a.
+  const Eigen::Array2d unit(height, height / a);
   visu::Report report("Bogie", "bounce and pitch over a wavy profile at 20 m/s");
   const Eigen::VectorXd lengths = Eigen::VectorXd::LinSpaced(37, 2, 11),
                         fine = Eigen::VectorXd::LinSpaced(451, 2, 11);
-  Eigen::VectorXd bounce(37), pitch(37);
+  Eigen::Matrix2Xd points(2, lengths.size()), curve(2, fine.size());
   double worst = 0, energy_error = 0;
-  for (Eigen::Index i = 0; i < 37; ++i) {
+  for (Eigen::Index i = 0; i < lengths.size(); ++i) {
     Bogie one(lengths[i]);
     Recorder recorder(one, 5 * ms);
-    const Amplitudes found = simulate(one, recorder), e = exact(lengths[i]);
+    const Eigen::Vector2d found = simulate(one, recorder), e = exact(lengths[i]);
     const Eigen::VectorXd energy = recorder.total_energy();
-    bounce[i] = found.bounce / height;
-    pitch[i] = a * found.pitch / height;
-    worst = std::max(
-        {worst, std::abs(found.bounce - e.bounce) / height, a * std::abs(found.pitch - e.pitch) / height});
+    points.col(i) = found.array() / unit;
+    worst = std::max(worst, ((found - e).array() / unit).abs().maxCoeff());
     energy_error = std::max(energy_error, (energy.array() - energy[0]).abs().maxCoeff());
-    if (std::abs(lengths[i] - 2 * a) < 1e-9 || std::abs(lengths[i] - 4 * a) < 1e-9) {
+    if (std::abs(lengths[i] - 2 * a) < 1e-9 || std::abs(lengths[i] - 4 * a) < 1e-9)
       fmt::print("wavelength {} m: bounce {:.3f} mm, pitch {:.3f} mrad; closed form {:.3f} mm, {:.3f} mrad\n",
-                 lengths[i], found.bounce / mm, found.pitch / 1e-3, e.bounce / mm, e.pitch / 1e-3);
-      report.add_animation(draw(recorder, lengths[i]),
-                           fmt::format("Wavelength {} m, wheelbase {} m.", lengths[i], 2 * a));
-    }
+                 lengths[i], found[0] / mm, found[1] / 1e-3, e[0] / mm, e[1] / 1e-3);
+    if (std::abs(lengths[i] - 4 * a) < 1e-9)
+      report.add_animation(draw(recorder, lengths[i]), "Wavelength 5 m, twice the wheelbase: pitch alone.");
   }
   fmt::print("largest difference from the closed form {:.1e} of the profile\n", worst);
   fmt::print("energy error {:.1e} J\n", energy_error);
 
   // 9. Report.
-  report.add_chart(
-      {"Steady amplitude over amplitude of the profile",
-       {"wavelength", "m"},
-       {"amplitude", ""},
-       {{"bounce", lengths, bounce, visu::Stroke::points, "#4477aa"},
-        {"pitch, times a", lengths, pitch, visu::Stroke::points, "#bb5566"},
-        {"bounce, closed form", fine, fine.unaryExpr([](double L) { return exact(L).bounce / height; }),
-         visu::Stroke::line, "#4477aa"},
-        {"pitch, closed form", fine, fine.unaryExpr([](double L) { return a * exact(L).pitch / height; }),
-         visu::Stroke::line, "#bb5566"}}});
+  for (Eigen::Index i = 0; i < fine.size(); ++i) curve.col(i) = exact(fine[i]).array() / unit;
+  report.add_chart({"Steady amplitude over amplitude of the profile",
+                    {"wavelength", "m"},
+                    {"amplitude", ""},
+                    {{"bounce", lengths, points.row(0), visu::Stroke::points, "#4477aa"},
+                     {"pitch, times a", lengths, points.row(1), visu::Stroke::points, "#bb5566"},
+                     {"bounce, closed form", fine, curve.row(0), visu::Stroke::line, "#4477aa"},
+                     {"pitch, closed form", fine, curve.row(1), visu::Stroke::line, "#bb5566"}}});
   report.write("bogie.html");
   fmt::print("wrote bogie.html\n");
 } catch (const std::exception& e) {
