@@ -122,7 +122,7 @@ int main() try {
     scene.items.push_back(
         {"curve", "", sphere, {0.0025, 1, 1}, "#bb5566", {system.coupler.point({0, 0.0125, 0})}});
   }
-  scene.camera = {.target = {0.17, 0, 0.09}, .width = 1.05, .azimuth = -75, .elevation = 10};
+  scene.camera = {.target = {0.17, 0, 0.085}, .width = 1.15, .azimuth = -75, .elevation = 10};
   const visu::Chart bearing{"Bearing A", {"time", "s"}, {"force", "N"}, {{"force", time, force}}};
   visu::write_animation_page(
       "four_bar.html", "Four-bar", scene, {bearing, recorder.energy_chart()},
