@@ -83,7 +83,7 @@ visu::Scene draw(const Recorder& recorder, double wavelength) {
     scene.items.push_back({"beam", "frame", box, {3.2, 0.12, 0.18}, "#4477aa", {{0, side, 0.12}}});
     for (const std::string name : {"front", "rear"}) {
       const visu::Anchor box_end{name, {0, side, 0}}, seat{"frame", {name[0] == 'f' ? a : -a, side, 0.05}};
-      scene.items.push_back({"wheel", name, wheel, {radius, 0.12, 1}, "#555555", {{0, 0.75 * side, 0}}});
+      scene.items.push_back({"wheel", name, cylinder, {radius, 0.12, 1}, "#555555", {{0, 0.75 * side, 0}}});
       scene.items.push_back({"axle", name, cylinder, {0.08, 1.05, 1}, "#777777", {{0, 0.525 * side, 0}}});
       scene.links.push_back({"primary", box_end, seat, visu::LinkShape::spring, 0.07, "#bb5566"});
     }
