@@ -79,66 +79,54 @@ class Andrews : public System {
 };
 
 // 4. What the bodies look like: bars between their hinges, in the axes of each body, in layers one above the other.
-visu::Item bar(const char* body, int layer, const Vector3d& a, const Vector3d& b, const char* colour) {
-  const Vector3d size = (b - a).cwiseAbs() + Vector3d(3, 3, 1.8) * mm;
-  const visu::Pose middle{(a + b) / 2 + layer * Vector3d(0, 0, 2 * mm)};
-  return {.name = fmt::format("{}, layer {}", body, layer),
-          .frame = body,
-          .size = size,
-          .colour = colour,
-          .offset = middle};
-}
-visu::Item hinge(const char* name, double x, double y) {
-  const Vector3d ball(2.5 * mm, 1, 1);
-  return {.name = name,
-          .frame = "",
-          .shape = visu::Shape::sphere,
-          .size = ball,
-          .colour = "#333333",
-          .offset = {{x, y, 0}}};
-}
-
 void write_page(const Recorder& recorder) {
+  using enum visu::Shape;
   visu::Scene scene = recorder.scene();
-  scene.time *= 200;  // slow motion
-  scene.items = {bar("1", 0, {-ra, 0, 0}, {rr - ra, 0, 0}, "#bb5566"),
-                 bar("2", 1, {da - d, 0, 0}, {da, 0, 0}, "#ddaa33"),
-                 bar("3", 0, {-sb, sa, 0}, {-sb, sa - ss, 0}, "#4477aa"),
-                 bar("3", -1, {-sb, sa - sc, 0}, {sd - sb, sa - sc, 0}, "#4477aa"),
-                 bar("4", 2, {0, e - ea, 0}, {0, -ea, 0}, "#228833"),
-                 bar("5", 1, {-ta, -tb, 0}, {zt - ta, -tb, 0}, "#66ccee"),
-                 bar("6", 3, {fa - zf, 0, 0}, {fa, 0, 0}, "#aa3377"),
-                 bar("7", 2, {ub, ua, 0}, {ub, ua - u, 0}, "#999933"),
-                 hinge("O", 0, 0),
-                 hinge("A", xa, ya),
-                 hinge("B", xb, yb),
-                 hinge("C", xc, yc)};
-  const visu::Anchor C{"", {xc, yc, 0}}, D{"3", {sd - sb, sa - sc, 0}};
-  scene.links = {{.name = "spring", .a = C, .b = D, .shape = visu::LinkShape::spring, .radius = 2 * mm}};
-  scene.camera = {.target = {-0.02, 0.024, 0}, .width = 0.23, .azimuth = -90, .elevation = 70, .follow = ""};
+  const Vector3d C(xc, yc, 0), D(sd - sb, sa - sc, 0);
+  const auto bar = [&](const char* body, int layer, const Vector3d& a, const Vector3d& b,
+                       const char* colour) {
+    const Vector3d size = (b - a).cwiseAbs() + Vector3d(3, 3, 1.8) * mm;
+    const visu::Pose middle{(a + b) / 2 + layer * Vector3d(0, 0, 2 * mm)};
+    scene.items.push_back({fmt::format("{}, layer {}", body, layer), body, box, size, colour, middle});
+  };
+  bar("1", 0, {-ra, 0, 0}, {rr - ra, 0, 0}, "#bb5566");
+  bar("2", 1, {da - d, 0, 0}, {da, 0, 0}, "#ddaa33");
+  bar("3", 0, {-sb, sa, 0}, {-sb, sa - ss, 0}, "#4477aa");
+  bar("3", -1, {-sb, sa - sc, 0}, D, "#4477aa");
+  bar("4", 2, {0, e - ea, 0}, {0, -ea, 0}, "#228833");
+  bar("5", 1, {-ta, -tb, 0}, {zt - ta, -tb, 0}, "#66ccee");
+  bar("6", 3, {fa - zf, 0, 0}, {fa, 0, 0}, "#aa3377");
+  bar("7", 2, {ub, ua, 0}, {ub, ua - u, 0}, "#999933");
+  const Eigen::Quaterniond upright(Eigen::AngleAxisd(pi / 2, Vector3d::UnitX()));  // cylinders lie along y
+  const auto pin = [&](const char* name, const char* body, const Vector3d& place) {
+    const visu::Pose pose{place + Vector3d(0, 0, 2 * mm), upright};
+    scene.items.push_back({name, body, cylinder, {1 * mm, 12 * mm, 1}, "#333333", pose});
+  };
+  pin("O", "", {0, 0, 0}), pin("A", "", {xa, ya, 0}), pin("B", "", {xb, yb, 0}), pin("C", "", C);
+  pin("D", "3", D), pin("E", "2", {da - d, 0, 0}), pin("F", "1", {rr - ra, 0, 0});
+  pin("G", "4", {0, e - ea, 0}), pin("H", "6", {fa - zf, 0, 0});
+  scene.links = {{"spring", {"", C}, {"3", D}, visu::LinkShape::spring, 2 * mm}};
+  scene.camera = {.target = {-0.02, 0.024, 0}, .width = 0.23, .azimuth = -90, .elevation = 70};
   visu::write_animation_page(
-      "andrews.html", "Andrews' squeezing mechanism", scene, {recorder.energy_chart()},
-      "Seven bodies in three closed loops, driven by a constant moment on the red crank: "
-      "30 ms in six seconds. One coordinate, six dependent angles.");
+      "andrews.html", "Andrews' mechanism", scene, {recorder.energy_chart()},
+      "Seven bodies in three closed loops, driven by a constant moment on the red crank. One coordinate, six "
+      "dependent angles.");
 }
 
-int main() {
-  try {
-    Andrews andrews;
-    RungeKutta integrator(andrews, {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11});
-    Recorder recorder(andrews, 0.05 * ms);
-    recorder(integrator.state());
-    integrator.advance(0.03, std::ref(recorder));
-    const double beta = integrator.state().q[0],
-                 work = Andrews::moment * (beta - andrews.initial_state().q[0]);
-    const Eigen::VectorXd energy = recorder.total_energy();
-    fmt::print("at 0.03 s: beta {:.7f}, Theta {:.7f} rad\n", beta, andrews.closing.value(0));
-    fmt::print("the motor has done {:.5f} J, the energy balance closes within {:.0e} J\n", work,
-               (energy.array() - energy[0]).abs().maxCoeff());
-    write_page(recorder);
-    fmt::print("wrote andrews.html\n");
-  } catch (const std::exception& error) {
-    std::cerr << "andrews: " << error.what() << "\n";
-    return 1;
-  }
+int main() try {
+  Andrews andrews;
+  RungeKutta integrator(andrews, {.relative_tolerance = 1e-11, .absolute_tolerance = 1e-11});
+  Recorder recorder(andrews, 0.05 * ms);
+  recorder(integrator.state());
+  integrator.advance(0.03, std::ref(recorder));
+  const double beta = integrator.state().q[0], work = Andrews::moment * (beta - andrews.initial_state().q[0]);
+  const Eigen::VectorXd energy = recorder.total_energy();
+  fmt::print("at 0.03 s: beta {:.7f}, Theta {:.7f} rad\n", beta, andrews.closing.value(0));
+  fmt::print("the motor has done {:.5f} J, the energy balance closes within {:.0e} J\n", work,
+             (energy.array() - energy[0]).abs().maxCoeff());
+  write_page(recorder);
+  fmt::print("wrote andrews.html\n");
+} catch (const std::exception& error) {
+  std::cerr << "andrews: " << error.what() << "\n";
+  return 1;
 }

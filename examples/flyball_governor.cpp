@@ -13,9 +13,11 @@
 // their fastest motion dies out within a fraction of a millisecond. An implicit method follows the slow motion; an
 // explicit one is held to the step of the fast one.
 // Run: ./run flyball_governor
-// Prints: BDF: slider 0.61962 m, arms 22.349 deg, shaft 5.5482 rad/s at 10 s
+// Prints: BDF: slider 0.61962 m, arms 22.350 deg, shaft 5.5482 rad/s at 10 s
+// Prints: energy error 2e-04 J
 // Prints: Runge-Kutta: slider 0.61962 m, arms 22.350 deg, shaft 5.5482 rad/s at 10 s
-// Next: andrews.cpp (couplers as loops)
+// Prints: energy error 1e-06 J
+// Next: rolling_disc.cpp (conditions on velocities)
 // Reference: M. Gonzalez et al., Multibody Syst. Dyn. 16, 2006 (IFToMM library of benchmark problems, A05).
 
 #include <fmt/format.h>
@@ -35,7 +37,7 @@ constexpr double arm_mass = 3000 * arm * thickness * thickness, slider_mass = 30
 
 class Governor : public System {
  public:
-  Governor() : System("flyball governor") {}
+  Governor() : System("Flyball governor") {}
 
   // 2. Turn of the shaft, height of the slider, fall of the arms.
   Coordinate psi = coordinate("psi", 0, 2 * pi), s = coordinate("s", 0.5);
@@ -78,6 +80,11 @@ visu::Link spring(const char* coupler, const char* arm_body, double side) {
 void write_page(const Recorder& recorder) {
   visu::Scene scene = recorder.scene();
   scene.items = {box("shaft", {0.03, 0.03, arm}, "#777777"), box("slider", {edge, edge, edge}, "#ddaa33")};
+  scene.items.push_back({.name = "cross",
+                         .frame = "shaft",
+                         .size = {0.12, 0.03, 0.03},
+                         .colour = "#777777",
+                         .offset = {{0, 0, 0.5}}});
   scene.items.push_back(box("arm 1", {arm, 0.02, 0.02}, "#4477aa"));
   scene.items.push_back(box("arm 2", {arm, 0.02, 0.02}, "#4477aa"));
   scene.items.insert(scene.items.end(), {ball("ball 1"), ball("ball 2")});
@@ -102,17 +109,17 @@ void simulate(const char* method, void (*write)(const Recorder&)) {
   const Eigen::VectorXd &q = integrator.state().q, &qd = integrator.state().qd;
   fmt::print("{}: slider {:.5f} m, arms {:.3f} deg, shaft {:.4f} rad/s at 10 s\n", method, q[1], q[2] / deg,
              qd[0]);
+  const Eigen::VectorXd energy = recorder.total_energy();
+  fmt::print("energy error {:.0e} J\n", (energy.array() - energy[0]).abs().maxCoeff());
   fmt::print("    {} steps\n", integrator.statistics().steps);
   if (write) write(recorder);
 }
 
-int main() {
-  try {
-    simulate<Cvode>("BDF", write_page);
-    simulate<RungeKutta>("Runge-Kutta", nullptr);
-    fmt::print("wrote flyball_governor.html\n");
-  } catch (const std::exception& error) {
-    std::cerr << "flyball_governor: " << error.what() << "\n";
-    return 1;
-  }
+int main() try {
+  simulate<Cvode>("BDF", write_page);
+  simulate<RungeKutta>("Runge-Kutta", nullptr);
+  fmt::print("wrote flyball_governor.html\n");
+} catch (const std::exception& error) {
+  std::cerr << "flyball_governor: " << error.what() << "\n";
+  return 1;
 }

@@ -107,21 +107,22 @@ int main() try {
   // 6. Report, with the curve of the coupler's middle.
   using enum visu::Shape;
   visu::Scene scene = recorder.scene();
-  const Eigen::Vector3d pin(0.008, 0.07, 1);
+  const Eigen::Vector3d pin(0.008, 0.07, 1), ground_pin(0.008, 0.05, 1);
   scene.items = {{"crank", "crank", box, {AB, 0.02, width}, "#4477aa"},
                  {"coupler", "coupler", box, {BC, 0.02, width}, "#bb5566", {{0, 0.025, 0}}},
                  {"rocker", "rocker", box, {CD, 0.02, width}, "#ccbb44"},
-                 {"base", "", box, {AD + 0.1, 0.02, 0.02}, "#999999", {{AD / 2, 0.025, 0}}},
-                 {"A", "crank", cylinder, pin, "#333333", {{-AB / 2, 0.01, 0}}},
+                 {"base", "", box, {AD + 0.1, 0.02, 0.02}, "#999999", {{AD / 2, -0.025, 0}}},
+                 {"A", "crank", cylinder, ground_pin, "#333333", {{-AB / 2, -0.01, 0}}},
                  {"B", "crank", cylinder, pin, "#333333", {{AB / 2, 0.01, 0}}},
                  {"C", "rocker", cylinder, pin, "#333333", {{CD / 2, 0.01, 0}}},
-                 {"D", "rocker", cylinder, pin, "#333333", {{-CD / 2, 0.01, 0}}}};
+                 {"D", "rocker", cylinder, ground_pin, "#333333", {{-CD / 2, -0.01, 0}}}};
   for (double angle = 0; angle < 360; angle += 4) {
     at.q[0] = angle * deg;
     system.evaluate(at);
-    scene.items.push_back({"curve", "", sphere, {0.0025, 1, 1}, "#bb5566", {system.coupler.position()}});
+    scene.items.push_back(
+        {"curve", "", sphere, {0.0025, 1, 1}, "#bb5566", {system.coupler.point({0, 0.0125, 0})}});
   }
-  scene.camera = {.target = {0.17, 0, 0.09}, .width = 1.2, .azimuth = -75, .elevation = 10};
+  scene.camera = {.target = {0.17, 0, 0.085}, .width = 1.15, .azimuth = -75, .elevation = 10};
   const visu::Chart bearing{"Bearing A", {"time", "s"}, {"force", "N"}, {{"force", time, force}}};
   visu::write_animation_page(
       "four_bar.html", "Four-bar", scene, {bearing, recorder.energy_chart()},

@@ -1,4 +1,4 @@
-// Gyroscope: a motor-driven rotor in gimbals precesses under a weight and nutates after a knock.
+// Gyroscope: a motor-driven rotor in gimbals precesses under a weight and nutates when the weight is let go.
 //
 //      +---------------+      psi    outer ring, about z
 //      |  +---------+  |      theta  inner ring, about x
@@ -11,6 +11,7 @@
 // Run: ./run gyroscope
 // Prints: steady precession    0.88290 rad/s, closed form 0.88290 rad/s
 // Prints: nutation             7.158 Hz, closed form 7.158 Hz
+// Prints: mean precession      0.874 rad/s
 // Prints: deepest dip          -2.660 deg, small-angle form -2.661 deg
 // Prints: motor moment up to   0.0048 N m
 // Prints: energy error         2.1e-08 J

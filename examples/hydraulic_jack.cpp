@@ -8,8 +8,8 @@
 // Shows: pressures as first-order states, a jack between two bodies, a controller that opens the valve; oil is a spring of
 // its own. Statics by hand: F times its lever carries the weight of the bed.
 // Run: ./run hydraulic_jack
-// Prints: angle 34.96 deg of 35.00 deg after 12 s
-// Prints: jack force 69.14 kN, by its lever 69.15 kN; bottom pressure 116.7 bar
+// Prints: angle 34.99 deg of 35.00 deg after 20 s
+// Prints: jack force 69.13 kN, by its lever 69.13 kN; bottom pressure 118.4 bar
 // Prints: on its oil alone 4.56 Hz, by hand 4.56 Hz
 // Prints: energy error 9e-07 of the energy supplied
 // Next: bogie.cpp (a vehicle on its track)
@@ -82,9 +82,9 @@ int main() try {
   recorder.watch("p_1", [](const State& s) { return s.x[0] / 1e5; });
   recorder.watch("p_2", [](const State& s) { return s.x[1] / 1e5; });
   recorder(integrator.state());
-  integrator.advance(12, std::ref(recorder));
+  integrator.advance(20, std::ref(recorder));
   const State end = integrator.state();
-  fmt::print("angle {:.2f} deg of {:.2f} deg after 12 s\n", end.q[0] / deg, goal / deg);
+  fmt::print("angle {:.2f} deg of {:.2f} deg after 20 s\n", end.q[0] / deg, goal / deg);
 
   // 5. Statics by hand: force times lever of the jack, weight times lever of the bed.
   const double a = end.q[0], r = compute_lever(a), F = tipper.jack.force(), weight = mass * 9.81;
@@ -107,22 +107,25 @@ int main() try {
              (energy.array() - energy[0]).abs().maxCoeff() / recorder.supplied_energy());
 
   // 7. Report.
+  const Eigen::Vector3d eye_on_bed = eye - Eigen::Vector3d(centre, 0, 0.25);
   visu::Scene scene = recorder.scene();
   scene.items = {{"bed", "bed", visu::Shape::box, {bed_length, 2.2, 0.5}, "#4477aa"},
+                 {"lug",
+                  "bed",
+                  visu::Shape::box,
+                  {0.2, 0.3, 0.14},
+                  "#4477aa",
+                  {eye_on_bed + Eigen::Vector3d(0, 0, 0.04)}},
                  {"frame", "", visu::Shape::box, {5.5, 0.8, 0.2}, "#999999", {{1.8, 0, -1.1}}},
                  {"hinge", "", visu::Shape::box, {0.3, 0.8, 1.1}, "#999999", {{-0.15, 0, -0.5}}}};
-  scene.links = {{"cylinder",
-                  {"", foot},
-                  {"bed", eye - Eigen::Vector3d(centre, 0, 0.25)},
-                  visu::LinkShape::line,
-                  0.06,
-                  "#bb5566"}};
-  scene.ground = -1.6;
+  scene.links = {{"cylinder", {"", foot}, {"bed", eye_on_bed}, visu::LinkShape::line, 0.09, "#bb5566"}};
+  scene.ground = -1.2;
   scene.camera = {.target = {2, 0, 0.9}, .width = 12, .azimuth = -75, .elevation = 12};
   visu::write_animation_page(
       "hydraulic_jack.html", "Hydraulic jack", scene,
-      {recorder.coordinate_chart("rad"),
-       recorder.watched_chart("Pressures", "pressure", "bar", {"p_1", "p_2"}), recorder.energy_chart()},
+      {{"Angle", {"time", "s"}, {"a", "deg"}, {{"angle", recorder.time(), recorder.coordinate(0) / deg}}},
+       recorder.watched_chart("Pressures", "pressure", "bar", {"p_1", "p_2"}),
+       recorder.energy_chart()},
       "A bed of 5 t. The valve opens fully, then closes with the error; half of the "
       "energy is lost in its edges.");
   fmt::print("wrote hydraulic_jack.html\n");

@@ -11,9 +11,10 @@
 // Shows: modes, and their animation; frequency response from an input; loaded springs given by their preload.
 // At w^2 = k_t / m_w the body moves by m_w / m_b of the post, whatever the suspension is.
 // Run: ./run quarter_car
-// Prints: bounce    1.2484 Hz, closed form 1.2484 Hz; with the damper 1.269 Hz, damping ratio 0.258
-// Prints: wheel hop 11.3155 Hz, closed form 11.3155 Hz; with the damper 11.132 Hz, damping ratio 0.279
+// Prints: bounce    1.2484 Hz, closed form 1.2484 Hz; with the damper 1.226 Hz, damping ratio 0.258
+// Prints: wheel hop 11.3155 Hz, closed form 11.3155 Hz; with the damper 10.691 Hz, damping ratio 0.279
 // Prints: damper  600 N s/m: gain at 10.705 Hz 0.13125, m_w / m_b 0.13125
+// Prints: damper 1600 N s/m: gain at 10.705 Hz 0.13125, m_w / m_b 0.13125
 // Prints: damper 4000 N s/m: gain at 10.705 Hz 0.13125, m_w / m_b 0.13125
 // Prints: energy error 1.1e-02 J
 // Next: dc_motor.cpp (first-order states)
@@ -71,7 +72,7 @@ visu::Scene dressed(visu::Scene scene, double height) {
   scene.links = {{"spring", axle, lower, visu::LinkShape::spring, 0.05, "#bb5566"},
                  {"rod", axle, lower, visu::LinkShape::line, 0.012, "#333333"},
                  {"tube", tube, lower, visu::LinkShape::line, 0.03, "#ccbb44"}};
-  scene.camera = {.target = {0, 0, 0.5}, .width = 4, .azimuth = -80, .elevation = 8};
+  scene.camera = {.target = {0, 0, 0.5}, .width = 3, .azimuth = -80, .elevation = 8};
   return scene;
 }
 
@@ -88,7 +89,8 @@ int main() try {
   for (std::size_t i = 0; i < 2; ++i)
     fmt::print("{} {:.4f} Hz, closed form {:.4f} Hz; with the damper {:.3f} Hz, damping ratio {:.3f}\n",
                i ? "wheel hop" : "bounce   ", modes[i].frequency,
-               std::sqrt(half_sum + (i ? root : -root)) / (2 * pi), damped[i].frequency, damped[i].damping);
+               std::sqrt(half_sum + (i ? root : -root)) / (2 * pi), damped[i].pole.imag() / (2 * pi),
+               damped[i].damping);
 
   // 5. Frequency response to the post, for three dampers.
   visu::Chart response{"Body over post",
@@ -110,6 +112,9 @@ int main() try {
                gain(fixed_point), m_w / m_b);
   }
 
+  response.series.push_back({"m_w / m_b at the fixed point", Eigen::VectorXd::Constant(1, fixed_point),
+                             Eigen::VectorXd::Constant(1, m_w / m_b), visu::Stroke::points});
+
   // 6. Integration: the post jumps up by 50 mm.
   car.post_height.set(50 * mm);
   Newmark newmark(car, {.step = 0.2 * ms});
@@ -126,9 +131,10 @@ int main() try {
       .add_charts({recorder.coordinate_chart("m"), recorder.energy_chart()});
   report.add_section("Frequency response").add_chart(response).add_section("Modes");
   for (std::size_t i = 0; i < 2; ++i) {
-    report.add_animation(dressed(mode_scene(car, rest, damped[i], {.amplitude = 0.06}), 0),
-                         fmt::format("{}, {:.2f} Hz, damping ratio {:.2f}; shown without its decay.",
-                                     i ? "Wheel hop" : "Bounce", damped[i].frequency, damped[i].damping));
+    report.add_animation(
+        dressed(mode_scene(car, rest, damped[i], {.amplitude = 0.06}), 0),
+        fmt::format("{}, {:.2f} Hz, damping ratio {:.2f}; shown without its decay.",
+                    i ? "Wheel hop" : "Bounce", damped[i].pole.imag() / (2 * pi), damped[i].damping));
   }
   report.write("quarter_car.html");
   fmt::print("wrote quarter_car.html\n");

@@ -11,8 +11,11 @@
 // is the controller; what it costs when the controller does not know the payload.
 // Run: ./run robot_arm
 // Prints: payload known: largest error 0.000 deg, largest torque 48.3 N m
-// Prints: payload unknown: largest error 14.459 deg, largest torque 48.1 N m
-// Theory: docs/teaching/robot_arm.md
+// Prints: energy error 9e-04 J
+// Prints: payload unknown: largest error 14.460 deg, largest torque 48.1 N m
+// Prints: energy error 1e-03 J
+// Next: flexible_beam.cpp (a body that bends)
+// Reference: B. Siciliano et al., Robotics: Modelling, Planning and Control, Springer, 2009, sect. 8.5.
 
 #include <fmt/format.h>
 
@@ -49,7 +52,9 @@ State path(State s) {
 class Arm : public System {
  public:
   explicit Arm(double mass, Controller c = {})
-      : System("arm"), payload(body("payload", Inertia::sphere(mass, 0.04))), controller(std::move(c)) {}
+      : System("Robot arm"),
+        payload(body("payload", Inertia::sphere(mass, 0.04))),
+        controller(std::move(c)) {}
 
   UrdfRobot robot{*this, std::string(EASYDYN_EXAMPLES) + "/robots/arm.urdf"};
   Body& payload;
@@ -76,7 +81,7 @@ class Arm : public System {
 };
 
 // 3. The motion under computed torque by a model that knows a payload of `known` kg: largest error of the angles.
-visu::Series simulate(double known, visu::Scene& scene) {
+visu::Series simulate(double known, visu::Scene& scene, visu::Chart& energies) {
   Arm model(known);
   Arm arm(payload_mass, [&](State now) -> Vector5 {
     const State r = path(now);
@@ -101,27 +106,28 @@ visu::Series simulate(double known, visu::Scene& scene) {
                      .y = Eigen::VectorXd::Map(errors.data(), recorder.time().size())};
   fmt::print("{}: largest error {:.3f} deg, largest torque {:.1f} N m\n", error.name, error.y.maxCoeff(),
              largest_torque);
+  const Eigen::VectorXd energy = recorder.total_energy();
+  fmt::print("energy error {:.0e} J\n", (energy.array() - energy[0]).abs().maxCoeff());
   scene = recorder.scene();
+  energies = recorder.energy_chart();
   scene.items = arm.robot.items();
   return error;
 }
 
-int main() {
-  try {
-    visu::Scene scene;
-    visu::Chart errors{
-        .title = "Largest error of the angles", .x = {"time", "s"}, .y = {"error", "deg"}, .series = {}};
-    for (const double known : {payload_mass, 0.0}) errors.series.push_back(simulate(known, scene));
-    scene.items.push_back(
-        {.name = "payload", .frame = "payload", .shape = visu::Shape::sphere, .size = {0.04, 1, 1}});
-    scene.ground = 0;
-    scene.camera = {.target = {0.25, 0, 0.5}, .width = 2.6, .azimuth = -50, .elevation = 18, .follow = ""};
-    visu::write_animation_page(
-        "robot_arm.html", "Robot arm from a URDF file", scene, {errors},
-        "The arm of `robots/arm.urdf` carries a payload that its controller does not know.");
-    fmt::print("wrote robot_arm.html\n");
-  } catch (const std::exception& e) {
-    std::cerr << "robot_arm: " << e.what() << "\n";
-    return 1;
-  }
+int main() try {
+  visu::Scene scene;
+  visu::Chart energies,
+      errors{.title = "Largest error of the angles", .x = {"time", "s"}, .y = {"error", "deg"}, .series = {}};
+  for (const double known : {payload_mass, 0.0}) errors.series.push_back(simulate(known, scene, energies));
+  scene.items.push_back(
+      {.name = "payload", .frame = "payload", .shape = visu::Shape::sphere, .size = {0.04, 1, 1}});
+  scene.ground = 0;
+  scene.camera = {.target = {0.25, 0, 0.5}, .width = 2.6, .azimuth = -50, .elevation = 18, .follow = ""};
+  visu::write_animation_page(
+      "robot_arm.html", "Robot arm from a URDF file", scene, {errors, energies},
+      "The arm of `robots/arm.urdf` carries a payload that its controller does not know.");
+  fmt::print("wrote robot_arm.html\n");
+} catch (const std::exception& e) {
+  std::cerr << "robot_arm: " << e.what() << "\n";
+  return 1;
 }

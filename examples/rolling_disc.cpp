@@ -94,12 +94,13 @@ int main() try {
   const double critical = r * std::sqrt(A * mass * g * r / (C * (C + mass * r * r)));
   for (const double ratio : {0.8, 1.2}) {
     const double square = mass * g * r * (1 - ratio * ratio) / (A + mass * r * r);
+    const auto rounded = [](double x) { return std::round(x * 1e3) / 1e3 + 0.0; };  // no -0.000
     const std::complex<double> pole = lean_pole(disc, ratio * critical);
     const std::complex<double> closed_form = std::sqrt(std::complex<double>(square));
     fmt::print(
         "at {:.1f} of the critical speed {:.4f} m/s: lean ~ exp(({:.3f} + {:.3f} i) t), closed form ({:.3f} "
         "+ {:.3f} i)\n",
-        ratio, critical, pole.real(), pole.imag(), closed_form.real(), closed_form.imag());
+        ratio, critical, rounded(pole.real()), rounded(pole.imag()), closed_form.real(), closed_form.imag());
   }
 
   // 7. For the page: more lean than the circle needs.

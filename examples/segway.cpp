@@ -13,7 +13,7 @@
 // Prints: poles with feedback: (-4.500, 0.000) (-4.000, 0.000) (-1.000, 1.000) (-1.000, -1.000)
 // Prints: backwards first by 0.150 m, lean up to 11.95 deg, after 8 s at 1.999 m
 // Prints: energy error 3.8e-04 J
-// Next: robot_arm.cpp (a mechanism from a file)
+// Next: robot_arm.cpp (a mechanism from a URDF file)
 // Reference: K. J. Astrom, R. M. Murray, Feedback Systems, Princeton, 2008, ch. 6.
 
 #include <fmt/format.h>

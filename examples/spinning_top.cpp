@@ -89,7 +89,7 @@ int main() try {
   Recorder recorder(top, 2 * ms);
   std::vector<Eigen::Vector3d> path;
   recorder(newmark.state());
-  newmark.advance(2.4, [&](const State& state) {
+  newmark.advance(2.2, [&](const State& state) {
     recorder(state);
     path.push_back(top.disc.point({0, 0, 0.04}));
   });
