@@ -300,8 +300,12 @@ struct AdaptiveIntegrator::RungeKuttaBackend : Backend {
   ~RungeKuttaBackend() override { ERKStepFree(&memory); }
   // ERKStep takes any flag for final; an error estimate beyond all bounds makes it try again.
   int give_up_trial(N_Vector rate) override {
+    constexpr double shortest = 1e-9;  // [s]: closer to an obstacle there is nothing to gain
+    double h = 0;
+    ERKStepGetCurrentStep(memory, &h);
+    if (!has_started || std::abs(h) < shortest) return 1;
     N_VConst(1e30, rate);
-    return has_started ? 0 : 1;
+    return 0;
   }
   const char* name() const override { return "RungeKutta"; }
   void set_stop_time(double t) override { ERKStepSetStopTime(memory, t); }

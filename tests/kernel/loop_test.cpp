@@ -164,7 +164,15 @@ TEST(Loop, RefusesToPassADeadPointUnseen) {
 // A drag link, whose dependent angles turn round and round: from the initial guess most states would close in another
 // turn or on the other branch.
 TEST(Loop, KeepsItsBranchAndTurnInAStateWhateverWasEvaluatedBefore) {
-  FourBar link(1, 0.9, 1.1, 0.3, {0.5, 1.0});
+  class DragLink : public FourBar {
+   public:
+    Body& crank = body("crank", Inertia(1, 0.2));
+    DragLink() : FourBar(1, 0.9, 1.1, 0.3, {0.5, 1.0}) {}
+    void positions() override {
+      FourBar::positions();
+      crank = rotate_z(q);
+    }
+  } link, fresh;
   State s = link.initial_state();
   s.qd[0] = 3;
   RungeKutta integrator(link, s, {.relative_tolerance = 1e-8, .absolute_tolerance = 1e-8, .max_step = 0.02});
@@ -175,8 +183,7 @@ TEST(Loop, KeepsItsBranchAndTurnInAStateWhateverWasEvaluatedBefore) {
     link.evaluate(now);
     rockers.push_back(link.solution[1].value());
   });
-  EXPECT_GT(std::abs(rockers.back() - rockers.front()), 4 * M_PI);
-  FourBar fresh(1, 0.9, 1.1, 0.3, {0.5, 1.0});
+  EXPECT_GT(std::abs(rockers.back() - rockers.front()), 3 * M_PI);
   for (std::size_t i = states.size(); i-- > 0;) {  // backwards, to make it harder
     fresh.evaluate(states[i]);
     EXPECT_NEAR(fresh.solution[1].value(), rockers[i], 1e-10);
