@@ -24,7 +24,7 @@ namespace easydyn {
 ///
 /// The shape coordinates eta are declared with the body. Inertia forces are those of T = v^T M v / 2 over all material
 /// points, exact for any motion of F (all gyroscopic and centrifugal terms); elastic and damping forces
-/// K_r eta + D_r eta. act by themselves, with their energies, and so does gravity() .
+/// K_r eta + D_r eta. act by themselves, with their energies, and so does gravity().
 /// Limits: strains and rotations within F are small; no stiffening by centrifugal or axial forces (turn well below
 /// the first bending frequency, or divide the body).
 /// Reference: A. A. Shabana, Dynamics of Multibody Systems, 4th ed., Cambridge, 2013, ch. 5.

@@ -17,8 +17,9 @@ class System;
 ///     system.compute_reactions(integrator.state());
 ///     bearing.force();
 ///
-/// Each reaction is cut once, in positions(). Six held coordinates move what follows the cut; the generalised forces that hold them are the reaction. This is
-/// exact in closed loops, too, where the loop's equations are given by frames that contain the cut.
+/// Each reaction is cut once, in positions(). Six held coordinates move what follows the cut; the generalised forces
+/// that hold them are the reaction. This is exact in closed loops, too, where the loop's equations are given by frames
+/// that contain the cut; equations in angles and lengths alone do not know of the cut.
 class Reaction {
  public:
   /// The frame after the cut: the same frame, or, while reactions are computed, one that could move.

@@ -155,9 +155,10 @@ class System {
   /// it. @param pseudo_accelerations  converted as qdd is; may be null
   /// @returns whether a chart has changed
   bool update_charts(State& state, Eigen::VectorXd* pseudo_accelerations = nullptr) const;
-  /// For solvers, after an evaluation near the state: the next solution of its loops starts from the last one.
+  /// After an evaluation near the state: the next solution of its loops starts from the last one. Integrators do it with
+  /// every step; who moves a mechanism by hand, state by state, after each evaluation.
   void update_loops(State& state) const;
-  /// For solvers: changes when coordinates are declared, held or released.
+  /// For solvers: changes when coordinates, first-order states, constraints or structures are declared, held or released.
   int revision() const { return revision_; }
   /// Ports touched in the last evaluation, in order.
   const std::vector<PortRecord>& ports() const { return ports_; }
@@ -198,8 +199,8 @@ class System {
   };
   struct ReactionData {
     std::string name;
-    int slot;              // of the first of six held coordinates
-    mutable int cuts = 0;  // in the present evaluation
+    int slot;      // of the first of six held coordinates
+    int cuts = 0;  // in the present evaluation
     Eigen::Vector3d force, moment;
     bool is_known = false;
   };

@@ -15,7 +15,7 @@ struct ModeSceneOptions {
 
 /// A mode as an animated scene:
 ///
-///   q = q_0 + amplitude Re(shape exp(i phase))        phase 0 ... 2 pi
+///   q = q_0 + amplitude Re(shape exp(i phase))        phase 0 ... 2 pi in each period
 ///
 /// Damping is left out, phases between the coordinates are kept. One moving frame per body, named after it, and no items
 /// yet: add what the bodies look like.
