@@ -70,8 +70,7 @@ int main() try {
   State at = system.initial_state();
   for (double angle = 0; angle < 360; angle += 0.25) {
     at.q[0] = angle * deg;
-    system.evaluate(at);
-    system.update_loops(at);  // the next place is solved from this one
+    system.evaluate(at);  // the state keeps the loop's solution: the next place is solved from this one
     least = std::min(least, system.rocker_angle());
     largest = std::max(largest, system.rocker_angle());
   }
@@ -120,7 +119,6 @@ int main() try {
   for (double angle = 0; angle < 360; angle += 4) {
     at.q[0] = angle * deg;
     system.evaluate(at);
-    system.update_loops(at);  // the next place is solved from this one
     scene.items.push_back(
         {"curve", "", sphere, {0.0025, 1, 1}, "#bb5566", {system.coupler.point({0, 0.0125, 0})}});
   }

@@ -73,7 +73,7 @@ class LoopClosure {
 ///
 /// Newton's iteration starts from the unknowns that the State carries, those of the last accepted step: the branch is
 /// kept by continuity, and a state means the same whatever was evaluated before. Who moves a mechanism by hand, state by
-/// state, calls `System::update_loops` after each evaluation. Rates, biases and gradients follow from the implicit
+/// state, keeps one `State` and passes it to `System::evaluate`, which writes the solution back. Rates, biases and gradients follow from the implicit
 /// function theorem:
 ///
 ///   J p. = -g.(p. = 0)      J p.. = -g..(p.. = 0)      J dp/dq = -dg/dq      J = dg/dp

@@ -28,7 +28,7 @@ void MotionTree::clear(double t) {
   deformable_.clear();
   gravity_ = mass_moment_ = {};
   energy_ = {};
-  velocities_known_ = accelerations_known_ = false;
+  velocities_known_ = forces_open_ = accelerations_known_ = false;
   trials_ = 0;
 }
 
@@ -141,7 +141,7 @@ void MotionTree::compute_velocities() {
     if (joint.parent >= 0) k.V += moving_[static_cast<std::size_t>(joint.parent)].V;
     k.f = {};
   }
-  velocities_known_ = true;
+  velocities_known_ = forces_open_ = true;
 }
 
 void MotionTree::compute_accelerations(const double* qdd) {
@@ -336,7 +336,12 @@ double MotionTree::kinetic_energy() const {
 }
 
 void MotionTree::throw_velocities_unknown() {
-  throw ModelError("velocities and forces of a frame are known in forces(), not yet in positions()");
+  throw ModelError("velocities of a frame are known in forces(), not yet in positions()");
+}
+
+void MotionTree::throw_forces_closed() {
+  throw ModelError(
+      "forces, moments and gravity act inside forces() only: elsewhere they would have no effect");
 }
 
 Vector3d MotionTree::angular_velocity(int motion) const {

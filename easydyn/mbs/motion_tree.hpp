@@ -89,8 +89,9 @@ class MotionTree {
   int size() const { return size_; }
   void shrink_to(int size);
 
-  /// Screws and twists, once all motions and bodies are known.
+  /// Screws and twists, once all motions and bodies are known. Forces may then be applied until close_forces().
   void compute_velocities();
+  void close_forces() { forces_open_ = false; }
   /// Accelerations A_k for given qdd (null: bias only).
   void compute_accelerations(const double* qdd);
   /// r += M qdd + h - Q from the accelerations last computed; drive_power: power of imposed motions [W].
@@ -104,18 +105,18 @@ class MotionTree {
   Eigen::Vector3d velocity_at(int motion, const Eigen::Vector3d& p) const;
   Eigen::Vector3d acceleration_at(int motion, const Eigen::Vector3d& p) const;
   void add_wrench(int motion, const Eigen::Vector3d& force, const Eigen::Vector3d& p) {
-    check_velocities();
+    check_forces_open();
     Moving& k = moving_[static_cast<std::size_t>(motion)];
     const spatial::Vector f(force);
     k.f -= {cross(spatial::Vector(p) - O_, f), f};
   }
   void add_moment(int motion, const Eigen::Vector3d& moment) {
-    check_velocities();
+    check_forces_open();
     moving_[static_cast<std::size_t>(motion)].f.moment -= spatial::Vector(moment);
   }
   /// Weight of all bodies in the uniform field g [m/s^2]; potential energy -m g . p (zero at the origin).
   void add_gravity(const Eigen::Vector3d& g) {
-    check_velocities();
+    check_forces_open();
     gravity_ += spatial::Vector(g);
     energy_.potential -= dot(spatial::Vector(g), mass_moment_);
   }
@@ -160,7 +161,11 @@ class MotionTree {
   void check_velocities() const {
     if (!velocities_known_) throw_velocities_unknown();
   }
+  void check_forces_open() const {
+    if (!forces_open_) throw_forces_closed();
+  }
   [[noreturn]] static void throw_velocities_unknown();
+  [[noreturn]] static void throw_forces_closed();
   /// Twist and bias acceleration of motion k about the point P; the motions on the way go to `path`, root first.
   void follow(int motion, const spatial::Vector& P, std::vector<int>& path, spatial::Twist& V,
               spatial::Twist& A) const;
@@ -198,7 +203,7 @@ class MotionTree {
   Eigen::VectorXd shape_accelerations_, shape_forces_;  // scratch
   Eigen::MatrixXd jacobian_, mass_jacobian_;            // scratch
   int trials_ = 0;
-  bool velocities_known_ = false, accelerations_known_ = false;
+  bool velocities_known_ = false, forces_open_ = false, accelerations_known_ = false;
   EnergyAccounts energy_;
 };
 

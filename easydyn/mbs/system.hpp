@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easydyn/mbs/body.hpp"
@@ -115,6 +116,8 @@ class System {
   void compute_mass_and_bias(const State& state, Eigen::Ref<Eigen::MatrixXd> M,
                              Eigen::Ref<Eigen::VectorXd> bias);
   EnergyBalance compute_energy(const State& state);
+  /// The same without the structures, at the last evaluation (with port forces as they were).
+  EnergyBalance body_energy() const;
   /// f of the first-order states x. = f at the last evaluation.
   Eigen::Map<const Eigen::VectorXd> first_order_rates() const { return {rates_.data(), first_order_size()}; }
   /// Generalised force that holds a held coordinate, at the last evaluation [N, N m].
@@ -124,6 +127,12 @@ class System {
   void compute_reactions(const State& state);
   /// Places bodies and computes velocities, forces and accelerations at a state, so that `bodies()` answer.
   void evaluate(const State& state);
+  /// The same for who moves a mechanism by hand, state by state: the solution of the loops is kept in the state, and the
+  /// next evaluation of it starts from there, on the same branch.
+  void evaluate(State& state) {
+    evaluate(std::as_const(state));
+    update_loops(state);
+  }
 
   // ---- for solvers that treat structures through their ports ----
 
@@ -156,7 +165,7 @@ class System {
   /// @returns whether a chart has changed
   bool update_charts(State& state, Eigen::VectorXd* pseudo_accelerations = nullptr) const;
   /// After an evaluation near the state: the next solution of its loops starts from the last one. Integrators do it with
-  /// every step; who moves a mechanism by hand, state by state, after each evaluation.
+  /// every step.
   void update_loops(State& state) const;
   /// For solvers: changes when coordinates, first-order states, constraints or structures are declared, held or released.
   int revision() const { return revision_; }

@@ -119,9 +119,7 @@ TEST(Loop, KeepsItsBranchAndTakesTheGuessed) {
   for (double q = 1; q < 1 + 2 * M_PI + 0.01; q += 0.05) {
     s_up.q[0] = s_down.q[0] = q;
     up.evaluate(s_up);
-    up.update_loops(s_up);
     down.evaluate(s_down);
-    down.update_loops(s_down);
     EXPECT_GT(std::sin(up.solution[1].value() - up.solution[0].value()), 0.1);
     EXPECT_LT(std::sin(down.solution[1].value() - down.solution[0].value()), -0.1);
   }
@@ -146,7 +144,6 @@ TEST(Loop, RefusesToPassADeadPointUnseen) {
   State s = parallelogram.initial_state();
   s.q[0] = 0.01;
   parallelogram.evaluate(s);
-  parallelogram.update_loops(s);  // as an integrator does after a step
   s.q[0] = -0.008;
   EXPECT_THAT([&] { parallelogram.evaluate(s); },
               ThrowsMessage<SolverError>(
