@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "easydyn/error.hpp"
+#include "easydyn/sim/difference.hpp"
 
 namespace easydyn {
 
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 Linearization linearize(System& system, const State& state, double difference) {
   if (!(difference > 0))
@@ -23,25 +23,27 @@ Linearization linearize(System& system, const State& state, double difference) {
   Linearization lin{system.compute_mass_matrix(state), MatrixXd(n, n), MatrixXd(n, n)};
 
   State shifted = state;
-  // (r(-2d) - 8 r(-d) + 8 r(d) - r(2d)) / 12 d
-  const auto derivative = [&](auto set, double step) -> VectorXd {
-    const auto r = [&](double d) -> VectorXd {
-      set(d);
-      return system.compute_residual(shifted);
-    };
-    const VectorXd sum = r(-2 * step) - 8 * r(-step) + 8 * r(step) - r(2 * step);
-    set(0.0);
-    return sum / (12 * step);
+  const auto by = [&](double& x, double origin, double step) {
+    return central_difference(
+        [&](double d) {
+          x = origin + d;
+          return system.compute_residual(shifted);
+        },
+        step);
   };
   for (int i = 0; i < n; ++i) {
-    lin.K.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; }, difference);
-    lin.C.col(i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; }, difference);
+    lin.K.col(i) = by(shifted.q[i], state.q[i], difference);
+    lin.C.col(i) = by(shifted.qd[i], state.qd[i], difference);
   }
   lin.B.resize(n, system.input_size());
   for (int i = 0; i < system.input_size(); ++i) {
-    const double value = system.input_value(i);
-    lin.B.col(i) = -derivative([&](double d) { system.set_input(i, value + d); },
-                               difference * std::max(1.0, std::abs(value)));
+    const KeptInput input(system, i);
+    lin.B.col(i) = -central_difference(
+        [&](double d) {
+          system.set_input(i, input.value() + d);
+          return system.compute_residual(state);
+        },
+        difference * std::max(1.0, std::abs(input.value())));
   }
   return lin;
 }

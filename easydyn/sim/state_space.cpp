@@ -5,10 +5,12 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "easydyn/error.hpp"
 #include "easydyn/sim/accelerations.hpp"
 #include "easydyn/sim/balance.hpp"
+#include "easydyn/sim/difference.hpp"
 
 namespace easydyn {
 
@@ -28,34 +30,33 @@ StateSpace linearize_state_space(System& system, const State& state, double diff
     solver.solve(shifted);
     VectorXd y(ny + nz);
     y.head(ny) << shifted.qd, shifted.qdd, shifted.xd;
-    if (nz > 0) system.evaluate(shifted);
+    if (nz > 0) system.evaluate(std::as_const(shifted));
     for (int i = 0; i < nz; ++i) y[ny + i] = system.output_value(i);
     return y;
   };
-  // (f(-2d) - 8 f(-d) + 8 f(d) - f(2d)) / 12 d
-  const auto derivative = [&](auto set, double scale = 1) -> VectorXd {
-    const double step = difference * scale;
-    const auto at = [&](double d) {
-      set(d);
-      return rates();
-    };
-    const VectorXd sum = at(-2 * step) - 8 * at(-step) + 8 * at(step) - at(2 * step);
-    set(0.0);
-    return sum / (12 * step);
+  const auto by = [&](double& x, double origin, double scale = 1) {
+    return central_difference(
+        [&](double d) {
+          x = origin + d;
+          return rates();
+        },
+        difference * scale);
   };
   MatrixXd by_y(ny + nz, ny), by_u(ny + nz, nu);
   for (int i = 0; i < n; ++i) {
-    by_y.col(i) = derivative([&](double d) { shifted.q[i] = state.q[i] + d; });
-    by_y.col(n + i) = derivative([&](double d) { shifted.qd[i] = state.qd[i] + d; });
+    by_y.col(i) = by(shifted.q[i], state.q[i]);
+    by_y.col(n + i) = by(shifted.qd[i], state.qd[i]);
   }
   for (int i = 0; i < nx; ++i)
-    by_y.col(2 * n + i) =
-        derivative([&](double d) { shifted.x[i] = state.x[i] + d; }, std::max(1.0, std::abs(state.x[i])));
+    by_y.col(2 * n + i) = by(shifted.x[i], state.x[i], std::max(1.0, std::abs(state.x[i])));
   for (int i = 0; i < nu; ++i) {
-    const double value = system.input_value(i);
-    by_u.col(i) =
-        derivative([&](double d) { system.set_input(i, value + d); }, std::max(1.0, std::abs(value)));
-    system.set_input(i, value);
+    const KeptInput input(system, i);
+    by_u.col(i) = central_difference(
+        [&](double d) {
+          system.set_input(i, input.value() + d);
+          return rates();
+        },
+        difference * std::max(1.0, std::abs(input.value())));
   }
   StateSpace space;
   space.A = by_y.topRows(ny);

@@ -78,6 +78,37 @@ TEST(System, IsNotEvaluatedInsideItsOwnForces) {
               ThrowsMessage<ModelError>(HasSubstr("inside its own positions() or forces()")));
 }
 
+TEST(Forces, OutsideForcesAreRefusedInsteadOfLost) {
+  Pendulum p;
+  p.evaluate(p.initial_state());
+  const auto refused = ThrowsMessage<ModelError>(HasSubstr("act inside forces() only"));
+  EXPECT_THAT([&] { p.bob.add_force({1, 0, 0}, p.bob.position()); }, refused);
+  EXPECT_THAT([&] { p.bob.add_moment({1, 0, 0}); }, refused);
+  class TooEarly : public Pendulum {
+   public:
+    void positions() override {
+      Pendulum::positions();
+      bob.add_force({1, 0, 0}, bob.position());
+    }
+  } early;
+  EXPECT_THAT([&] { early.evaluate(early.initial_state()); }, refused);
+}
+
+TEST(Linearization, LeavesInputsAsTheyWereWhereItThrows) {
+  class Touchy : public Pendulum {
+   public:
+    Input u = input("u", 0.25);
+    void forces() override {
+      Pendulum::forces();
+      if (u.value() > 0.25) throw ModelError("beyond the table");
+    }
+  } system;
+  EXPECT_THROW(linearize(system, system.initial_state()), ModelError);
+  EXPECT_EQ(system.u.value(), 0.25);
+  EXPECT_THROW(linearize_state_space(system, system.initial_state()), ModelError);
+  EXPECT_EQ(system.u.value(), 0.25);
+}
+
 TEST(System, RefusesTwoThingsOfOneName) {
   Pendulum p;
   EXPECT_THROW(p.body("bob", 1.0), ModelError);
