@@ -43,8 +43,9 @@ struct StepperOptions {
 /// |beta - 1/6 + (alpha_m - alpha_f) / 2| h^2 |qdd_1 - qdd_0| (after Zienkiewicz & Xie, Earthquake Eng. Struct.
 /// Dyn. 20, 1991), for each first-order state from the changes of its rate over this step and the one before, h_0, by
 /// |1/12 - (alpha_m - alpha_f) (1/2 - alpha_f)| h |xd_1 - xd_0 - (h / h_0) (xd_0 - xd_-1)|; in the first step the
-/// earlier change counts as zero, which is too much rather than too little. `tolerance` bounds it per step: it is not
-/// the accuracy of the result after many steps.
+/// earlier change counts as zero, which is too much rather than too little. `tolerance` bounds this leading term per step
+/// (the error itself reached 2.1 times as much where the term passes zero): it is not the accuracy of the result after
+/// many steps.
 class ImplicitStepper : public Integrator {
  public:
   ~ImplicitStepper() override;

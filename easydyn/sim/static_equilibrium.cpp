@@ -319,14 +319,14 @@ void settle(StaticProblem& problem, VectorXd& z, double reference, const StaticO
   if (why.empty()) why = polish(problem, z, reference, options);
   const VectorXd reached = z;
   if (why.empty()) {
-    if (is_stable(problem, z)) return;
+    if (!options.damping || is_stable(problem, z)) return;
     z = start;
     if (!relax(problem, z, reference, options) || !polish(problem, z, reference, options).empty())
       z = reached;
     return;
   }
   z = start;
-  if (!is_held(problem, reached) || !relax(problem, z, reference, options) ||
+  if (!options.damping || !is_held(problem, reached) || !relax(problem, z, reference, options) ||
       !polish(problem, z, reference, options).empty())
     throw_unsettled(problem, reached, why);
 }

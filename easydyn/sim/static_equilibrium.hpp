@@ -7,6 +7,7 @@ namespace easydyn {
 struct StaticOptions {
   double tolerance = 1e-9;  ///< largest residual of KINSOL, relative to the largest force at the start
   int max_iterations = 200;
+  bool damping = true;  ///< false: Newton alone, to whatever equilibrium it finds
 };
 
 /// Coordinates at which the residual vanishes for the given time, rates and accelerations:

@@ -45,9 +45,9 @@ const Method methods[] = {
      50},
     {"adams",
      [](System& s, const AdaptiveOptions& o) { return std::make_unique<Cvode>(s, o, Cvode::Method::adams); },
-     1000},
+     500},
     {"bdf", [](System& s, const AdaptiveOptions& o) { return std::make_unique<Cvode>(s, o); }, 1000},
-    {"ida", [](System& s, const AdaptiveOptions& o) { return std::make_unique<Ida>(s, o); }, 1000}};
+    {"ida", [](System& s, const AdaptiveOptions& o) { return std::make_unique<Ida>(s, o); }, 250}};
 
 class Adaptive : public testing::TestWithParam<Method> {};
 INSTANTIATE_TEST_SUITE_P(All, Adaptive, testing::ValuesIn(methods),
