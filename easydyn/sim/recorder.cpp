@@ -81,13 +81,18 @@ visu::Chart Recorder::energy_chart() const {
   };
   visu::Chart chart{.title = "Energy", .x = {"time", "s"}, .y = {"energy", "J"}, .series = {}};
   chart.series.push_back({"kinetic", time(), account(&EnergyBalance::kinetic)});
-  chart.series.push_back({"potential", time(), account(&EnergyBalance::potential)});
+  // A potential energy counts from anywhere: from its start the others are seen beside it.
+  VectorXd potential = account(&EnergyBalance::potential);
+  const double start = potential.size() > 0 ? potential[0] : 0;
+  potential.array() -= start;
+  chart.series.push_back({"potential, from its start", time(), potential});
   const VectorXd dissipated = account(&EnergyBalance::dissipated),
                  supplied = account(&EnergyBalance::supplied);
   const double rounding = 1e-12 * (chart.series[0].y.cwiseAbs() + chart.series[1].y.cwiseAbs()).maxCoeff();
   if (dissipated.cwiseAbs().maxCoeff() > rounding) chart.series.push_back({"dissipated", time(), dissipated});
   if (supplied.cwiseAbs().maxCoeff() > rounding) chart.series.push_back({"supplied", time(), supplied});
-  chart.series.push_back({"balance (constant)", time(), total_energy(), visu::Stroke::dashed});
+  chart.series.push_back(
+      {"balance (constant)", time(), total_energy().array() - start, visu::Stroke::dashed});
   return chart;
 }
 
