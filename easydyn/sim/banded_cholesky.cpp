@@ -35,6 +35,9 @@ BandedCholesky::BandedCholesky(const SparseMatrix& A, int half_bandwidth, const 
                       name, i, pivot));
     row_i[i] = 1 / std::sqrt(pivot);
   }
+  columns_.setZero(n_, b_);
+  for (int i = 0; i < n_; ++i)
+    for (int k = 1; k <= std::min(b_, n_ - 1 - i); ++k) columns_(i, k - 1) = L_(i + k, b_ - k);
 }
 
 template <int columns>
@@ -59,11 +62,44 @@ void BandedCholesky::solve_columns(double* X, int stride) const {
   }
 }
 
+void BandedCholesky::solve_in_place(double* x) const {
+  // L y = x, column by column
+  for (int i = 0; i < n_; ++i) {
+    const double y = x[i] * L_(i, b_);
+    x[i] = y;
+    const double* L = columns_.row(i).data();
+    const int rest = std::min(b_, n_ - 1 - i);
+    for (int k = 0; k < rest; ++k) x[i + 1 + k] -= L[k] * y;
+  }
+  // L^T x = y, row by row
+  for (int i = n_ - 1; i >= 0; --i) {
+    const double* L = L_.row(i).data();
+    const double value = x[i] * L[b_];
+    x[i] = value;
+    for (int k = std::max(0, b_ - i); k < b_; ++k) x[i - b_ + k] -= L[k] * value;
+  }
+}
+
+void BandedCholesky::solve_unit_in_part(int j, int first, int last, double* x) const {
+  std::fill_n(x, last - first + 1, 0.0);
+  x -= first;  // now by row
+  x[j] = 1;
+  for (int i = j; i <= last; ++i) {
+    x[i] *= L_(i, b_);
+    for (int k = 1; k <= std::min(b_, last - i); ++k) x[i + k] -= columns_(i, k - 1) * x[i];
+  }
+  for (int i = last; i >= first; --i) {
+    x[i] *= L_(i, b_);
+    for (int k = std::max(first, i - b_); k < i; ++k) x[k] -= L_(i, k - i + b_) * x[i];
+  }
+}
+
 void BandedCholesky::solve_in_place(RightHandSides& X) const {
   const int m = static_cast<int>(X.cols());
   int c = 0;
   for (; c + 8 <= m; c += 8) solve_columns<8>(X.data() + c, m);
   for (; c + 4 <= m; c += 4) solve_columns<4>(X.data() + c, m);
+  if (m == 1) return solve_in_place(X.data());
   for (; c < m; ++c) solve_columns<1>(X.data() + c, m);
 }
 

@@ -22,6 +22,12 @@ class BandedCholesky {
 
   /// X := A^-1 X.
   void solve_in_place(RightHandSides& X) const;
+  /// x := A^-1 x for n numbers. Each unknown takes part in the next ones as soon as it is known, so that the way through
+  /// the matrix is as short as the additions allow.
+  void solve_in_place(double* x) const;
+  /// Rows first <= i <= last of column j of A^-1, into x[0] ... x[last - first]. Exact but for what the forward
+  /// substitution leaves beyond `last`: for a column that has decayed there.
+  void solve_unit_in_part(int j, int first, int last, double* x) const;
   int size() const { return n_; }
   int half_bandwidth() const { return b_; }
 
@@ -32,6 +38,8 @@ class BandedCholesky {
   int n_ = 0, b_ = 0;
   // Row i holds L(i, i-b) ... L(i, i-1), then 1 / L(i, i).
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> L_;
+  // Row i holds L(i+1, i) ... L(i+b, i): the columns, one after the other.
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> columns_;
 };
 
 }  // namespace easydyn
