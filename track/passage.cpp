@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "easydyn/require.hpp"
+#include "easydyn/sim/implicit_stepper.hpp"
 #include "easydyn/sim/static_equilibrium.hpp"
 
 namespace easydyn::track {
@@ -57,10 +58,11 @@ class PassageRecorder {
       energy->setZero(rows);
   }
 
-  // What must see every step, whether it is recorded or not: powers (trapezoidal rule) and contact peaks.
-  void watch(const State& state) {
-    const EnergyBalance now = system_.compute_energy(state);
-    const double h = state.t - last_time_;
+  /// What must see every step, whether it is recorded or not: contact forces, and powers (trapezoidal rule).
+  /// @param now               the system has just been evaluated there
+  /// @param track_dissipated  energy that the track has turned into heat since the last call, if not in `now` [J]
+  void watch(double t, const EnergyBalance& now, double track_dissipated) {
+    const double h = t - last_time_;
     for (std::size_t w = 0; w < contacts_.size(); ++w) {
       double& largest = p_.largest_contact_force[static_cast<Index>(w)];
       double& smallest = p_.smallest_contact_force[static_cast<Index>(w)];
@@ -69,31 +71,34 @@ class PassageRecorder {
       if (!contacts_[w]->is_closed()) p_.contact_loss_time[static_cast<Index>(w)] += h;
     }
     if (has_last_) {
-      dissipated_ += 0.5 * h * (last_.dissipated + now.dissipated);
+      dissipated_ += 0.5 * h * (last_.dissipated + now.dissipated) + track_dissipated;
       supplied_ += 0.5 * h * (last_.supplied + now.supplied);
     }
     last_ = now;
-    last_time_ = state.t;
+    last_time_ = t;
     has_last_ = true;
   }
 
-  // After watch(): the system has just been evaluated at this state.
-  void record(const State& state) {
+  /// After watch(), at the same time.
+  /// @param q_bodies   coordinates of the bodies
+  /// @param q, qd      coordinate i of the track, and its rate
+  template <class Coordinate>
+  void record(const Eigen::Ref<const VectorXd>& q_bodies, double kinetic, double potential, Coordinate q,
+              Coordinate qd) {
     const TrackModel& model = track_.model();
-    const VectorXd q = track_.coordinates(state.q), qd = track_.coordinates(state.qd);
-    p_.time[row_] = state.t;
+    p_.time[row_] = last_time_;
     for (Index s = 0; s < p_.sleeper_x.size(); ++s) {
       const int j = sleepers_[static_cast<std::size_t>(s)];
-      p_.rail_deflection(row_, s) = q[model.rail_dof(j * model.data().elements_per_bay)];
-      p_.sleeper_displacement(row_, s) = q[model.sleeper_dof(j)];
-      if (has_foundation_) p_.foundation_displacement(row_, s) = q[model.foundation_dof(j)];
+      p_.rail_deflection(row_, s) = q(model.rail_dof(j * model.data().elements_per_bay));
+      p_.sleeper_displacement(row_, s) = q(model.sleeper_dof(j));
+      if (has_foundation_) p_.foundation_displacement(row_, s) = q(model.foundation_dof(j));
       p_.ballast_reaction(row_, s) = model.ballast_reaction(j, q, qd);
     }
     for (std::size_t w = 0; w < contacts_.size(); ++w) {
       p_.contact_force(row_, static_cast<Index>(w)) = contacts_[w]->force();
       p_.contact_position(row_, static_cast<Index>(w)) = contacts_[w]->x();
     }
-    p_.coordinates.row(row_) = state.q.head(system_.body_size()).transpose();
+    p_.coordinates.row(row_) = q_bodies.transpose();
     Index b = 0;
     for (const Body& body : system_.bodies()) {
       p_.body_acceleration(row_, b) = body.acceleration().z();
@@ -101,11 +106,19 @@ class PassageRecorder {
       p_.body_pitch(row_, b) = std::atan2(body.frame().rotation()(0, 2), body.frame().rotation()(2, 2));
       ++b;
     }
-    p_.kinetic_energy[row_] = last_.kinetic;
-    p_.potential_energy[row_] = last_.potential;
+    p_.kinetic_energy[row_] = kinetic;
+    p_.potential_energy[row_] = potential;
     p_.dissipated_energy[row_] = dissipated_;
     p_.supplied_energy[row_] = supplied_;
     ++row_;
+  }
+
+  std::size_t memory() const {
+    const Index doubles = p_.rail_deflection.size() + p_.sleeper_displacement.size() +
+                          p_.foundation_displacement.size() + p_.ballast_reaction.size() +
+                          p_.contact_force.size() + p_.contact_position.size() + p_.coordinates.size() +
+                          p_.body_acceleration.size() + p_.body_height.size() + p_.body_pitch.size();
+    return 8 * static_cast<std::size_t>(doubles);
   }
 
   Passage& passage() { return p_; }
@@ -136,6 +149,57 @@ void warn_of_uplift(Passage& p, const TrackData& data) {
                   p.sleeper_x[sleeper], -1e-3 * least, p.time[row], 1e-3 * p.track_weight));
 }
 
+template <class Run>
+void run_with_kernel(System& system, const FlexibleTrack& track, const State& start,
+                     const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
+  Newmark integrator(system, start, {.step = options.step});
+  EnergyBalance energy;
+  const auto watch = [&] {
+    energy = system.compute_energy(integrator.state());
+    recorder.watch(integrator.state().t, energy, 0);
+  };
+  watch();
+  run(
+      [&] {
+        integrator.step();
+        watch();
+      },
+      [&] {
+        const VectorXd q = track.coordinates(integrator.state().q),
+                       qd = track.coordinates(integrator.state().qd);
+        const std::function<double(int)> q_of = [&](int i) { return q[i]; },
+                                         qd_of = [&](int i) { return qd[i]; };
+        recorder.record(integrator.state().q.head(system.body_size()), energy.kinetic, energy.potential, q_of,
+                        qd_of);
+      });
+  passage.statistics = {.steps = integrator.statistics().steps,
+                        .evaluations = integrator.statistics().evaluations};
+  passage.memory = recorder.memory();
+}
+
+template <class Run>
+void run_with_window(System& system, const FlexibleTrack& track,
+                     const std::vector<const WheelRailContact*>& contacts, const State& start,
+                     const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
+  PassageStepper stepper(system, track, {contacts.begin(), contacts.end()}, start,
+                         {.step = options.step, .window = options.window});
+  recorder.watch(stepper.t(), system.body_energy(), 0);
+  const TrackWindow& window = stepper.window();
+  run(
+      [&] {
+        stepper.step();
+        recorder.watch(stepper.t(), system.body_energy(), window.dissipated_in_step());
+      },
+      [&] {
+        const EnergyBalance energy = stepper.energy();
+        const std::function<double(int)> q = [&](int i) { return window.q(i); },
+                                         qd = [&](int i) { return window.qd(i); };
+        recorder.record(stepper.q(), energy.kinetic, energy.potential, q, qd);
+      });
+  passage.statistics = stepper.statistics();
+  passage.memory = recorder.memory() + window.memory();
+}
+
 }  // namespace
 
 Passage compute_passage(System& system, const FlexibleTrack& track,
@@ -152,23 +216,23 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
   const State start = solve_quasi_static_motion(system, system.initial_state(), options.start_difference);
   const auto outputs = static_cast<Index>(std::ceil(options.duration / options.output_step - 1e-9));
   PassageRecorder recorder(system, track, contacts, options, outputs + 1);
-  recorder.watch(start);
-  recorder.record(start);
   const State at_rest = solve_static_equilibrium(system, system.initial_state());
   recorder.passage().static_ballast_reaction =
       track.model().ballast_reactions(track.coordinates(at_rest.q), track.coordinates(at_rest.qd)).sum();
 
-  Newmark integrator(system, start, {.step = options.step});
-  for (Index i = 1; i <= outputs; ++i) {
-    for (Index k = 0; k < every; ++k) {
-      integrator.step();
-      recorder.watch(integrator.state());
+  const auto run = [&](auto step_and_watch, auto record) {
+    record();
+    for (Index i = 1; i <= outputs; ++i) {
+      for (Index k = 0; k < every; ++k) step_and_watch();
+      record();
+      if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));
     }
-    recorder.record(integrator.state());
-    if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));
-  }
+  };
   Passage& passage = recorder.passage();
-  passage.statistics = integrator.statistics();
+  if (options.use_kernel)
+    run_with_kernel(system, track, start, options, recorder, passage, run);
+  else
+    run_with_window(system, track, contacts, start, options, recorder, passage, run);
   warn_of_uplift(passage, track.model().data());
   return std::move(passage);
 }

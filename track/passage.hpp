@@ -5,18 +5,20 @@
 #include <string>
 #include <vector>
 
-#include "easydyn/sim/implicit_stepper.hpp"
 #include "track/flexible_track.hpp"
+#include "track/passage_stepper.hpp"
 #include "track/wheel_rail_contact.hpp"
 
 namespace easydyn::track {
 
 struct PassageOptions {
-  double duration = 1;             ///< [s], > 0
-  double step = 1e-4;              ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
-  double output_step = 5e-4;       ///< [s], a multiple of the step
-  double first_sleeper_x = 0;      ///< sleepers from here ...
-  double last_sleeper_x = 0;       ///< ... to here [m] are recorded; at least one must stand there
+  double duration = 1;         ///< [s], > 0
+  double step = 1e-4;          ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
+  double window = 0;           ///< length of track that travels with the train [m]; 0: all of it at once
+  bool use_kernel = false;     ///< the general-purpose `Newmark` of the kernel, as a check; slow, no window
+  double output_step = 5e-4;   ///< [s], a multiple of the step
+  double first_sleeper_x = 0;  ///< sleepers from here ...
+  double last_sleeper_x = 0;   ///< ... to here [m] are recorded; at least one must stand there
   double start_difference = 2e-3;  ///< of the quasi-static start [s]
 };
 
@@ -45,12 +47,17 @@ struct Passage {
   double static_ballast_reaction = 0;  ///< of all sleepers together, at rest at the place of the start [N]
   double track_weight = 0;             ///< rails and sleeper per spacing, which holds the ballast down [N]
   std::vector<std::string> warnings;   ///< where a result leaves the range of the model
-  Newmark::Statistics statistics;
+  PassageStepper::Statistics statistics;
+  std::size_t memory = 0;  ///< of the results and of what solves the track [bytes]
 };
 
 /// Runs a system that moves over a flexible track, from the smooth quasi-static start at t = 0
-/// (`solve_quasi_static_motion`) with Newmark's method.
-/// @param contacts  those that the system applies, in the order of the result
+/// (`solve_quasi_static_motion`) with Newmark's method (`PassageStepper`).
+///
+/// With a window the cost of a step does not depend on the length of the track. What the window leaves behind is at rest,
+/// and recorded so. Energies: kinetic and potential ones of bodies, contacts and the window; works by the trapezoidal rule
+/// for bodies and contacts, exactly as Newmark's method has it for the track.
+/// @param contacts  those that the system applies, in the order in which it does
 /// @param progress  called with the fraction done
 /// @throws ModelError on impossible options, SolverError if a step does not converge
 Passage compute_passage(System& system, const FlexibleTrack& track,

@@ -121,13 +121,6 @@ Eigen::VectorXd TrackModel::rail_load(double x, double force) const {
   return f;
 }
 
-double TrackModel::ballast_reaction(int j, const Eigen::Ref<const Eigen::VectorXd>& q,
-                                    const Eigen::Ref<const Eigen::VectorXd>& qd) const {
-  const int u_s = sleeper_dof(j), u_f = foundation_dof(j);
-  const double compression = q[u_s] - (rigid_ ? 0 : q[u_f]), rate = qd[u_s] - (rigid_ ? 0 : qd[u_f]);
-  return data_.ballast_stiffness * compression + data_.ballast_damping * rate;
-}
-
 Eigen::VectorXd TrackModel::ballast_reactions(const Eigen::Ref<const Eigen::VectorXd>& q,
                                               const Eigen::Ref<const Eigen::VectorXd>& qd) const {
   Eigen::VectorXd reactions(sleepers());

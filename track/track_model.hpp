@@ -68,8 +68,13 @@ class TrackModel {
   Eigen::VectorXd rail_load(double x, double force) const;
 
   /// What the soil receives under sleeper j, positive downward [N]: k_b (u_s - u_f) + d_b (u_s' - u_f').
-  double ballast_reaction(int j, const Eigen::Ref<const Eigen::VectorXd>& q,
-                          const Eigen::Ref<const Eigen::VectorXd>& qd) const;
+  /// @param q, qd  coordinates and rates: vectors, or functions of the coordinate's number
+  template <class Q, class Qd>
+  double ballast_reaction(int j, const Q& q, const Qd& qd) const {
+    const int u_s = sleeper_dof(j), u_f = foundation_dof(j);
+    return data_.ballast_stiffness * (q(u_s) - (rigid_ ? 0 : q(u_f))) +
+           data_.ballast_damping * (qd(u_s) - (rigid_ ? 0 : qd(u_f)));
+  }
   Eigen::VectorXd ballast_reactions(const Eigen::Ref<const Eigen::VectorXd>& q,
                                     const Eigen::Ref<const Eigen::VectorXd>& qd) const;
 

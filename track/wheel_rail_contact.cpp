@@ -19,6 +19,7 @@ WheelRailContact::WheelRailContact(std::string name, const HertzContact& law, do
 }
 
 void WheelRailContact::apply(const Body& wheel, const FlexibleTrack& track) {
+  wheel_ = &wheel;
   x_ = wheel.position().x();
   const double speed = wheel.velocity().x();
   const ProfilePoint path = profile_->at(x_, radius_);
@@ -26,6 +27,7 @@ void WheelRailContact::apply(const Body& wheel, const FlexibleTrack& track) {
 
   const double delta =
       static_indentation_ + HertzContact::indentation(wheel.position().z(), rail.displacement(), path.r);
+  indentation_ = delta;
   force_ = law_.force(delta);
   rail.add_force(force_);
   wheel.add_force({0, 0, force_}, wheel.position());
@@ -33,6 +35,11 @@ void WheelRailContact::apply(const Body& wheel, const FlexibleTrack& track) {
   EnergyAccounts& energy = wheel.frame().tree()->energy();
   energy.potential += law_.energy(delta);
   energy.supplied += force_ * speed * (path.dr - rail.slope());
+}
+
+TrackContact::Force WheelRailContact::force_after(double change, double) const {
+  const double delta = indentation_ + change;
+  return {law_.force(delta), law_.stiffness(delta), 0};
 }
 
 }  // namespace easydyn::track

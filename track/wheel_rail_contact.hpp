@@ -7,6 +7,7 @@
 #include "track/flexible_track.hpp"
 #include "track/hertz_contact.hpp"
 #include "track/profile.hpp"
+#include "track/track_contact.hpp"
 
 namespace easydyn::track {
 
@@ -20,7 +21,7 @@ namespace easydyn::track {
 ///
 /// Energy: the contact stores 2/5 K delta^(5/2). Since it moves along the rail at v = x., it exchanges the
 /// power F v (r' - w') with the drive that keeps the speed; this enters the account of supplied power.
-class WheelRailContact {
+class WheelRailContact : public TrackContact {
  public:
   /// @param wheel_radius  filters the profile [m], > 0
   /// @param static_load   Q [N], >= 0
@@ -38,12 +39,18 @@ class WheelRailContact {
   double x() const { return x_; }          ///< at the last evaluation [m]
   bool is_closed() const { return force_ > 0; }
 
+  Force force_after(double change, double rate_change) const override;
+  /// The wheel of the last evaluation.
+  const Body* body() const override { return wheel_; }
+
  private:
   std::string name_;
   HertzContact law_;
   double radius_, static_load_, static_indentation_;
   std::shared_ptr<const Profile> profile_;
-  double force_ = 0, x_ = 0;
+  // At the last evaluation.
+  double force_ = 0, x_ = 0, indentation_ = 0;
+  const Body* wheel_ = nullptr;
 };
 
 }  // namespace easydyn::track

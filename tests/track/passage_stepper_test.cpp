@@ -1,0 +1,211 @@
+// The fast way of a passage against the general-purpose integrator, and the travelling window against the whole track.
+
+#include "track/passage_stepper.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "easydyn/easydyn.hpp"
+#include "track/passage.hpp"
+
+namespace easydyn::track {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double g = 9.81;
+
+/// Bogies of two wheel pairs, each frame with a mass on top: bounce and pitch, nearly linear.
+class Train : public System {
+ public:
+  struct Bogie {
+    Bogie(System& s, const std::string& name, double x_)
+        : x(x_),
+          frame_z(s.coordinate(name + " frame")),
+          frame_pitch(s.coordinate(name + " pitch")),
+          load_z(s.coordinate(name + " load")),
+          front_z(s.coordinate(name + " front")),
+          rear_z(s.coordinate(name + " rear")),
+          frame(s.body(name + " frame", Inertia(2500, 1800))),
+          load(s.body(name + " load", 15000.0)),
+          front(s.body(name + " front", 1800.0)),
+          rear(s.body(name + " rear", 1800.0)) {}
+    double x;
+    Coordinate frame_z, frame_pitch, load_z, front_z, rear_z;
+    Body &frame, &load, &front, &rear;
+    VerticalSpringDamper secondary{"secondary", 7e5, 4e4, 0, 15000 * g},
+        primary_front{"front", 2.4e6, 2e4, 0, 8750 * g}, primary_rear{"rear", 2.4e6, 2e4, 0, 8750 * g};
+  };
+
+  Train(const TrackModel& model, const std::vector<double>& places, double x0, double speed,
+        const std::shared_ptr<const Profile>& profile)
+      : track(*this, model), x0_(x0), speed_(speed) {
+    for (std::size_t b = 0; b < places.size(); ++b) {
+      const std::string name = "bogie " + std::to_string(b);
+      bogies.emplace_back(*this, name, places[b]);
+      for (const char* wheel : {" front", " rear"})
+        contacts.emplace_back(name + wheel, HertzContact(1e11, 2), 0.46, (8750 + 1800) * g, profile);
+    }
+  }
+  std::deque<Bogie> bogies;
+  FlexibleTrack track;
+  std::deque<WheelRailContact> contacts;
+
+  std::vector<const WheelRailContact*> contact_list() const {
+    std::vector<const WheelRailContact*> list;
+    for (const WheelRailContact& c : contacts) list.push_back(&c);
+    return list;
+  }
+
+ protected:
+  void positions() override {
+    const Expr x = x0_ + speed_ * time();
+    for (Bogie& b : bogies) {
+      b.frame = translate(x + b.x, 0, b.frame_z) * rotate_y(b.frame_pitch);
+      b.load = translate(x + b.x, 0, b.load_z);
+      b.front = translate(x + (b.x + 1.25), 0, b.front_z);
+      b.rear = translate(x + (b.x - 1.25), 0, b.rear_z);
+    }
+  }
+  void forces() override {
+    gravity(g);
+    std::size_t c = 0;
+    for (Bogie& b : bogies) {
+      b.secondary.apply(b.frame, {0, 0, 0}, b.load, {0, 0, 0});
+      b.primary_front.apply(b.front, {0, 0, 0}, b.frame, {1.25, 0, 0});
+      b.primary_rear.apply(b.rear, {0, 0, 0}, b.frame, {-1.25, 0, 0});
+      contacts[c++].apply(b.front, track);
+      contacts[c++].apply(b.rear, track);
+    }
+  }
+
+ private:
+  double x0_, speed_;
+};
+
+/// A bump of 2 mm that the wheels leave and land on, smooth enough for the impact to be resolved.
+class Bump : public Profile {
+ public:
+  explicit Bump(double height = 2e-3, double half_length = 0.5) : a_(height), L_(half_length) {}
+  ProfilePoint at(double x, double) const override {
+    const double k = std::acos(-1.0) / L_;
+    if (std::abs(x) > L_) return {};
+    return {a_ / 4 * std::pow(1 + std::cos(k * x), 2), -a_ / 2 * k * (1 + std::cos(k * x)) * std::sin(k * x),
+            -a_ / 2 * k * k * (std::cos(k * x) + std::cos(2 * k * x))};
+  }
+
+ private:
+  double a_, L_;
+};
+
+double largest_relative_difference(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+/// Columns without what is above 200 Hz: convolution with a sinc under a Gaussian window (down by 1e-9 from 250 Hz on).
+Eigen::MatrixXd below_200_hz(const Eigen::MatrixXd& columns, double dt) {
+  const double pi = std::acos(-1.0), cut = 225, sigma = 6.2 / (2 * pi * 25);
+  const int reach = static_cast<int>(std::ceil(6.5 * sigma / dt));
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(columns.rows() - 2 * reach, columns.cols());
+  for (int k = -reach; k <= reach; ++k) {
+    const double t = k * dt, sinc = k == 0 ? 2 * cut : std::sin(2 * pi * cut * t) / (pi * t);
+    result +=
+        dt * sinc * std::exp(-0.5 * t * t / (sigma * sigma)) * columns.middleRows(reach + k, result.rows());
+  }
+  return result;
+}
+
+TEST(PassageStepper, IsNewmarksMethodOfTheKernelOnEveryFoundation) {
+  for (const Foundation& foundation :
+       {Foundation(RigidGround{}), Foundation(Winkler{5e7, 4e5}), Foundation(WinklerMass{600, 5e7, 4e5}),
+        thalys_like_track().foundation}) {
+    TrackData data = thalys_like_track();
+    data.foundation = foundation;
+    PassageOptions options{
+        .duration = 0.12, .step = 2e-4, .output_step = 2e-4, .first_sleeper_x = -12, .last_sleeper_x = 12};
+    const TrackModel model(data, 100, -30);
+    const auto bump = std::make_shared<Bump>();
+    Train one(model, {-4, 3}, -3, 60, bump), other(model, {-4, 3}, -3, 60, bump);
+    const Passage fast = compute_passage(one, one.track, one.contact_list(), options);
+    options.use_kernel = true;
+    const Passage kernel = compute_passage(other, other.track, other.contact_list(), options);
+    EXPECT_LT(fast.smallest_contact_force.minCoeff(), 1e-3) << "no wheel lifts off";
+    EXPECT_LT(largest_relative_difference(fast.contact_force, kernel.contact_force), 1e-8);
+    EXPECT_LT(largest_relative_difference(fast.ballast_reaction, kernel.ballast_reaction), 1e-8);
+    EXPECT_LT(largest_relative_difference(fast.coordinates, kernel.coordinates), 1e-8);
+    EXPECT_LT(largest_relative_difference(fast.body_acceleration, kernel.body_acceleration), 1e-8);
+    EXPECT_LT(largest_relative_difference(fast.rail_deflection, kernel.rail_deflection), 1e-8);
+    EXPECT_LT(largest_relative_difference(fast.kinetic_energy, kernel.kinetic_energy), 1e-8);
+    EXPECT_LT(fast.statistics.evaluations, 3 * fast.statistics.steps);
+  }
+}
+
+/// Ballast reactions below 200 Hz of the middle 10 m of a track of so many bays; a train of 18.5 m goes over them at 80 m/s.
+Eigen::MatrixXd low_reactions(const Profile& profile, double window, int bays, double x0,
+                              double duration = 1) {
+  constexpr double dt = 4e-4;
+  const TrackModel model(thalys_like_track(), bays, -0.3 * bays);
+  Train train(model, {-8, 8}, x0, 80, std::shared_ptr<const Profile>(&profile, [](const Profile*) {}));
+  const Passage p = compute_passage(train, train.track, train.contact_list(),
+                                    {.duration = duration,
+                                     .step = 2e-4,
+                                     .window = window,
+                                     .output_step = dt,
+                                     .first_sleeper_x = -5,
+                                     .last_sleeper_x = 5});
+  EXPECT_EQ(p.statistics.moves > 100, window > 0);
+  return below_200_hz(p.ballast_reaction, dt);
+}
+
+TEST(PassageStepper, GivesTheSameInATravellingWindow) {
+  // 31 m of track before and behind the wheels: what the rail carries farther lies above 200 Hz.
+  const Bump smooth(0.5e-3, 0.6);
+  const Eigen::MatrixXd whole = low_reactions(smooth, 0, 400, -30);
+  EXPECT_LT(largest_relative_difference(low_reactions(smooth, 80, 400, -30), whole), 1e-6);
+  // The same on a longer track, and on one so short that its ends are as near as the window's.
+  EXPECT_LT(largest_relative_difference(low_reactions(smooth, 80, 500, -30), whole), 1e-6);
+  EXPECT_LT(largest_relative_difference(low_reactions(smooth, 0, 320, -30), whole), 1e-6);
+}
+
+TEST(PassageStepper, GivesTheSameInALongerWindowWhereWheelsLiftOff) {
+  // When contact is lost the wheels mix what comes back above 200 Hz into what lies below: 46 m are enough for 1e-6.
+  const Bump rough(1e-3, 0.4);
+  const Eigen::MatrixXd whole = low_reactions(rough, 0, 400, -30);
+  EXPECT_LT(largest_relative_difference(low_reactions(rough, 110, 400, -30), whole), 1e-6);
+}
+
+TEST(PassageStepper, DoesNotDependOnWhereItStarts) {
+  // The quasi-static start leaves out what the ripple of the sleepers does to the vehicle: 2e-5 of the reactions at first,
+  // which dies with the bounce of the loads, exp(-1.33 t). After 3.4 s, 280 m, the start is forgotten; the window does not
+  // mind how far it travels. A start four bays later is 30 ms later, rows are shifted.
+  const Bump smooth(0.5e-3, 0.6);
+  const Eigen::MatrixXd early = low_reactions(smooth, 80, 1200, -292.4, 4.2),
+                        late = low_reactions(smooth, 80, 1200, -290, 4.2);
+  const Eigen::Index shift = 75;  // 2.4 m at 80 m/s in steps of 0.4 ms
+  const Eigen::Index first = 8000, rows = late.rows() - shift - first;
+  EXPECT_LT(largest_relative_difference(early.middleRows(shift + first, rows), late.middleRows(first, rows)),
+            1e-6);
+}
+
+TEST(PassageStepper, SaysWhatItCannotDo) {
+  const TrackModel model(thalys_like_track(), 200, -60);
+  const auto flat = std::make_shared<FlatProfile>();
+  Train train(model, {0}, 0, 50, flat);
+  const State start = train.initial_state();
+  std::vector<const TrackContact*> contacts = {&train.contacts[0]};
+  EXPECT_THAT([&] { PassageStepper(train, train.track, contacts, start, {}); },
+              ThrowsMessage<ModelError>(
+                  AllOf(HasSubstr("touches the track in 2 places"), HasSubstr("1 contacts are given"))));
+  contacts.push_back(&train.contacts[1]);
+  EXPECT_THAT([&] { PassageStepper(train, train.track, contacts, start, {.window = 20}); },
+              ThrowsMessage<ModelError>(AllOf(HasSubstr("window"), HasSubstr("two absorbing ends"))));
+  EXPECT_THROW(PassageStepper(train, train.track, contacts, start, {.step = 0}), ModelError);
+  EXPECT_THROW(PassageStepper(train, train.track, contacts, start, {.window = -1}), ModelError);
+}
+
+}  // namespace
+}  // namespace easydyn::track

@@ -1,0 +1,260 @@
+#include "track/passage_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "easydyn/require.hpp"
+
+namespace easydyn::track {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+int bays_of(const TrackModel& model, double length) {
+  require_not_negative(model.data().label(), "window", length, "m");
+  return static_cast<int>(std::ceil(length / model.data().sleeper_spacing));
+}
+
+}  // namespace
+
+PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
+                               std::vector<const TrackContact*> contacts, const State& start,
+                               const PassageStepperOptions& options)
+    : system_(system),
+      track_(track),
+      contacts_(std::move(contacts)),
+      options_(options),
+      window_(track.model(), bays_of(track.model(), options.window), options.step),
+      t_(start.t) {
+  const char* const passage = "passage";
+  require_positive(passage, "tolerance", options.tolerance, "");
+  if (system.first_order_size() > 0 || system.constraint_size() > 0 || system.structures().size() != 1)
+    throw ModelError(fmt::format(
+        "passage: system \"{}\" has {} first-order states, {} velocity constraints and {} structures, must "
+        "have none, none and one; use the integrators of the kernel",
+        system.name(), system.first_order_size(), system.constraint_size(), system.structures().size()));
+  const int n = system.body_size();
+  q_ = start.q.head(n);
+  qd_ = start.qd.head(n);
+  qdd_ = start.qdd.head(n);
+
+  // The first evaluation tells where the track is touched, and the forces.
+  system_.evaluate(start);
+  const auto& ports = system_.ports();
+  if (ports.size() != contacts_.size())
+    throw ModelError(
+        fmt::format("passage: system \"{}\" touches the track in {} places, {} contacts are given",
+                    system.name(), ports.size(), contacts_.size()));
+  const auto n_ports = static_cast<Eigen::Index>(ports.size());
+  F_.resize(n_ports);
+  for (std::size_t p = 0; p < ports.size(); ++p) {
+    shapes_.push_back(ports[p].shape);
+    F_[static_cast<Eigen::Index>(p)] = ports[p].force;
+  }
+  free_.resize(ports.size());
+  F_evaluated_ = F_;
+  residual_.resize(n);
+  track_response_.setZero(n_ports, n_ports);
+
+  window_.set_state(window_.is_whole_track() ? 0 : wanted_first_bay(), track.coordinates(start.q),
+                    track.coordinates(start.qd), track.coordinates(start.qdd));
+  motion_ = [this](int, const PortShape& shape) {
+    const std::size_t p = port_++;
+    shapes_[p] = shape;
+    free_[p] = window_.free_motion(shape);
+    PortMotion motion = free_[p];
+    if (!knows_responses_) return motion;
+    const double h = options_.step;
+    const auto i = static_cast<Eigen::Index>(p);
+    for (Eigen::Index j = 0; j < F_.size(); ++j) {
+      const double y = track_response_(i, j) * F_[j];
+      if (y == 0) continue;
+      motion.displacement += 0.25 * h * h * y;
+      motion.velocity += 0.5 * h * y;
+      motion.slope +=
+          0.25 * h * h * window_.slope_response(shape, shapes_[static_cast<std::size_t>(j)]) * F_[j];
+    }
+    return motion;
+  };
+}
+
+// The contacts in the middle; a bay is left behind when the middle has moved by one.
+int PassageStepper::wanted_first_bay() const {
+  int least = std::numeric_limits<int>::max(), largest = 0;
+  const int per_bay = track_.model().sleeper_dof(1) - track_.model().sleeper_dof(0);
+  for (std::size_t p = 0; p < shapes_.size(); ++p) {
+    if (!contacts_[p]->body()) continue;
+    least = std::min(least, shapes_[p].index[0] / per_bay);
+    largest = std::max(largest, shapes_[p].index[0] / per_bay);
+  }
+  const int room = track_.model().data().ends.bays + window_.reach() + 1;
+  require(
+      window_.bays() >= largest - least + 2 * room, track_.model().data().label(), "window",
+      window_.bays() * track_.model().data().sleeper_spacing, "m",
+      fmt::format(
+          ">= {:.1f}: the train, on each side {} absorbing bays and {} that its contacts move within a step",
+          (largest - least + 2 * room) * track_.model().data().sleeper_spacing.value,
+          track_.model().data().ends.bays, window_.reach() + 1));
+  return (least + largest) / 2 - window_.bays() / 2;
+}
+
+// At the trial q_, qd_, qdd_ and F_: the bodies' residual without contacts, and the forces that the contacts apply.
+void PassageStepper::evaluate() {
+  const double h = options_.step;
+  q_ = q_star_ + 0.25 * h * h * qdd_;
+  qd_ = qd_star_ + 0.5 * h * qdd_;
+  port_ = 0;
+  system_.compute_body_residual({.t = t_, .q = q_.data(), .qd = qd_.data(), .qdd = qdd_.data()}, motion_,
+                                residual_.data());
+  ++statistics_.evaluations;
+  for (Eigen::Index p = 0; p < F_.size(); ++p)
+    F_evaluated_[p] = system_.ports()[static_cast<std::size_t>(p)].force;
+  if (B_.size() > 0) residual_.noalias() += B_.transpose() * F_evaluated_;
+}
+
+// J of the bodies without contacts, by differences, and what follows from it. Leaves the system evaluated at the trial.
+void PassageStepper::compute_jacobian() {
+  const int n = system_.body_size();
+  B_.setZero(F_.size(), n);
+  for (Eigen::Index p = 0; p < F_.size(); ++p) {
+    const Body* const body = contacts_[static_cast<std::size_t>(p)]->body();
+    if (!body) continue;
+    const ExprVector at = body->frame().express_point(Eigen::Vector3d::Zero());
+    for (const Gradient::Entry& g : at[2].gradient())
+      if (g.coordinate < n) B_(p, g.coordinate) = g.value;
+  }
+  evaluate();
+  const VectorXd residual = residual_, trial = qdd_;
+  MatrixXd J(n, n);
+  for (int i = 0; i < n; ++i) {
+    const double delta = 1e-2 * std::max(1.0, std::abs(trial[i]));
+    qdd_[i] = trial[i] + delta;
+    evaluate();
+    J.col(i) = (residual_ - residual) / delta;
+    qdd_[i] = trial[i];
+  }
+  evaluate();
+  inverse_ = J.partialPivLu().inverse();
+  body_response_ = B_ * inverse_ * B_.transpose();
+  jacobian_known_ = true;
+  ++statistics_.jacobians;
+}
+
+void PassageStepper::update_responses() {
+  for (Eigen::Index i = 0; i < F_.size(); ++i)
+    for (Eigen::Index j = 0; j <= i; ++j)
+      track_response_(i, j) = track_response_(j, i) =
+          window_.response(shapes_[static_cast<std::size_t>(i)], shapes_[static_cast<std::size_t>(j)]);
+  const double h = options_.step;
+  response_ = 0.25 * h * h * (track_response_ + body_response_);
+  knows_responses_ = true;
+}
+
+// Forces that agree with the approaches that they leave, from the forces of the last evaluation. correction_ holds the
+// bodies' accelerations without contact forces, less those of the trial.
+void PassageStepper::find_contact_forces() {
+  const double h = options_.step;
+  const Eigen::Index n = F_.size();
+  // Change of each approach, from the one evaluated to the one without any contact force.
+  approach_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const System::PortRecord& port = system_.ports()[static_cast<std::size_t>(i)];
+    approach_[i] = port.motion.displacement - free_[static_cast<std::size_t>(i)].displacement;
+  }
+  approach_.noalias() -= 0.25 * h * h * (B_ * correction_);
+
+  constexpr int most_sweeps = 200, most_iterations = 100;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    double largest_change = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      // d + p F(a + d) = free, monotone in the change d of the approach: Newton within brackets.
+      const double p = response_(i, i), free = approach_[i] - (response_.row(i).dot(F_) - p * F_[i]);
+      const TrackContact& contact = *contacts_[static_cast<std::size_t>(i)];
+      double d = free - p * F_[i], low = -std::numeric_limits<double>::infinity(), high = free;
+      TrackContact::Force law;
+      for (int k = 0; k < most_iterations; ++k) {
+        law = contact.force_after(d, 2 / h * d);
+        const double miss = d + p * law.F - free;
+        (miss > 0 ? high : low) = d;
+        const double slope = 1 + p * (law.stiffness + 2 / h * law.damping);
+        double next = d - miss / slope;
+        if (!(next >= low && next <= high)) next = std::isfinite(low) ? 0.5 * (low + high) : high;
+        const bool is_done = std::abs(next - d) <= 1e-15 * (std::abs(free) + std::abs(d)) || next == d;
+        d = next;
+        if (is_done) break;
+      }
+      const double F = (free - d) / p;
+      largest_change = std::max(largest_change, std::abs(F - F_[i]) / std::max(std::abs(F), 1.0));
+      F_[i] = F;
+    }
+    if (largest_change <= 0.01 * options_.tolerance) break;
+  }
+}
+
+void PassageStepper::step() {
+  const double h = options_.step;
+  if (!window_.is_whole_track()) {
+    const int wanted = wanted_first_bay();
+    if (wanted != window_.first_bay()) {
+      window_.move_to(wanted);
+      ++statistics_.moves;
+    }
+  }
+  window_.predict();
+  t_ += h;
+  q_star_ = q_ + h * qd_ + 0.25 * h * h * qdd_;
+  qd_star_ = qd_ + 0.5 * h * qdd_;
+  knows_responses_ = false;
+  if (jacobian_known_)
+    evaluate();
+  else
+    compute_jacobian();
+  update_responses();
+
+  double previous = std::numeric_limits<double>::infinity();
+  for (int iteration = 0;; ++iteration) {
+    // Contact forces, then the accelerations that they give to the bodies.
+    correction_.noalias() = -(inverse_ * residual_);
+    find_contact_forces();
+    lift_.noalias() = B_.transpose() * F_;
+    correction_.noalias() += inverse_ * lift_;
+    qdd_ += correction_;
+    evaluate();
+
+    // The true residual at the new trial.
+    lift_ -= residual_;
+    correction_.noalias() = inverse_ * lift_;
+    double error = 0;
+    for (Eigen::Index i = 0; i < correction_.size(); ++i)
+      error = std::max(error, std::abs(correction_[i]) / std::max(std::abs(qdd_[i]), 1e-3));
+    for (Eigen::Index p = 0; p < F_.size(); ++p)
+      error = std::max(error, std::abs(F_evaluated_[p] - F_[p]) / std::max(std::abs(F_[p]), 1.0));
+    // Smaller than that, and no longer falling: the last digits of the displacements.
+    const bool is_rounding = error <= 1e-3 * std::sqrt(options_.tolerance) && error >= 0.5 * previous;
+    if (error <= options_.tolerance || is_rounding) break;
+    if (!std::isfinite(error) || iteration >= options_.max_iterations)
+      throw SolverError(
+          fmt::format("passage: no convergence at t = {} s with step {} s after {} iterations, last "
+                      "relative correction {:.3g}; try a smaller step",
+                      t_, h, iteration, error));
+    if (error > 0.1 * previous) {
+      compute_jacobian();
+      update_responses();
+    }
+    previous = error;
+  }
+  window_.accept(shapes_, F_);
+  ++statistics_.steps;
+}
+
+EnergyBalance PassageStepper::energy() const {
+  EnergyBalance e = system_.body_energy();
+  e.kinetic += window_.kinetic_energy();
+  e.potential += window_.potential_energy();
+  return e;
+}
+
+}  // namespace easydyn::track
