@@ -172,7 +172,8 @@ int run(const Options& options, const std::string& command) {
       {"largest rail deflection", passage.rail_deflection.maxCoeff() / mm, "mm"},
       {"largest ballast reaction", passage.ballast_reaction.maxCoeff() / kN, "kN"},
       {"smallest ballast reaction", passage.ballast_reaction.minCoeff() / kN, "kN"},
-      {"longest loss of contact of a wheel pair", passage.contact_loss_time.maxCoeff() / ms, "ms"},
+      {"losses of contact", double(passage.contact_losses.sum()), ""},
+      {"longest loss of contact of a wheel pair", passage.longest_contact_loss.maxCoeff() / ms, "ms"},
       {"energy imbalance / work supplied", energy_imbalance, ""},
   };
   for (const auto& figure : summary)

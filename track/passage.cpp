@@ -6,6 +6,7 @@
 #include "easydyn/require.hpp"
 #include "easydyn/sim/implicit_stepper.hpp"
 #include "easydyn/sim/static_equilibrium.hpp"
+#include "track/contact_loss_counter.hpp"
 
 namespace easydyn::track {
 
@@ -45,7 +46,10 @@ class PassageRecorder {
     p_.foundation = kind_of(track.model().data().foundation);
     p_.largest_contact_force.setZero(nw);
     p_.smallest_contact_force.setConstant(nw, std::numeric_limits<double>::infinity());
+    p_.contact_losses.setZero(nw);
     p_.contact_loss_time.setZero(nw);
+    p_.longest_contact_loss.setZero(nw);
+    losses_.resize(contacts.size());
     for (const WheelRailContact* c : contacts) p_.contact_names.push_back(c->name());
     p_.coordinates.resize(rows, system.body_size());
     for (int i = 0; i < system.body_size(); ++i) p_.coordinate_names.push_back(system.coordinate_name(i));
@@ -68,7 +72,11 @@ class PassageRecorder {
       double& smallest = p_.smallest_contact_force[static_cast<Index>(w)];
       largest = std::max(largest, contacts_[w]->force());
       smallest = std::min(smallest, contacts_[w]->force());
-      if (!contacts_[w]->is_closed()) p_.contact_loss_time[static_cast<Index>(w)] += h;
+      ContactLossCounter& losses = losses_[w];
+      losses.update(t, contacts_[w]->is_closed());
+      p_.contact_losses[static_cast<Index>(w)] = losses.count();
+      p_.contact_loss_time[static_cast<Index>(w)] = losses.total_duration();
+      p_.longest_contact_loss[static_cast<Index>(w)] = losses.longest_duration();
     }
     if (has_last_) {
       dissipated_ += 0.5 * h * (last_.dissipated + now.dissipated) + track_dissipated;
@@ -128,6 +136,7 @@ class PassageRecorder {
   const FlexibleTrack& track_;
   const std::vector<const WheelRailContact*>& contacts_;
   std::vector<int> sleepers_;
+  std::vector<ContactLossCounter> losses_;
   bool has_foundation_ = false, has_last_ = false;
   EnergyBalance last_;
   double last_time_ = 0, dissipated_ = 0, supplied_ = 0;

@@ -30,7 +30,9 @@ struct Passage {
   Eigen::VectorXd largest_contact_force;               ///< nw, over every time step [N]
   std::string foundation;                              ///< kind_of() the foundation
   Eigen::VectorXd smallest_contact_force;              ///< nw, over every time step [N]
+  Eigen::VectorXi contact_losses;                      ///< nw, how often a wheel has left the rail
   Eigen::VectorXd contact_loss_time;                   ///< nw, total time without contact [s]
+  Eigen::VectorXd longest_contact_loss;                ///< nw [s]
   Eigen::VectorXd sleeper_x;                           ///< ns recorded sleepers [m]
   Eigen::MatrixXd rail_deflection;                     ///< nt x ns, above the sleepers [m]
   Eigen::MatrixXd sleeper_displacement;                ///< nt x ns [m]

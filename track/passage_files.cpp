@@ -39,6 +39,13 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
   file.write_vector("/contact/smallest", p.smallest_contact_force,
                     {"N", "smallest contact force, over every time step", "compression positive"});
 
+  file.write_vector("/contact/loss_count", p.contact_losses.cast<double>(),
+                    {"1", "how often each wheel has left the rail", "count"});
+  file.write_vector("/contact/loss_time", p.contact_loss_time,
+                    {"s", "time without contact, over every time step", "sum"});
+  file.write_vector("/contact/longest_loss", p.longest_contact_loss,
+                    {"s", "longest time without contact, over every time step", "duration"});
+
   const std::string down = "downward";
   file.write_vector("/sleeper/x", p.sleeper_x,
                     {"m", "position of the recorded sleepers", "x along the track"});
