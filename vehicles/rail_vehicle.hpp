@@ -93,8 +93,9 @@ struct RailVehicle {
 /// @throws ModelError on impossible values: object, quantity, value and accepted range are named
 void validate(const RailVehicle& vehicle);
 
-/// Stiffness of a track under one wheel pair, both rails together [N/m] (C: Zimmermann's beam 50E2 on the
-/// bundled tram track, 0.96e8; 60E1 on the bundled high-speed track, 1.6e8; rounded towards the softer).
+/// Stiffness of a track under one wheel pair, both rails together [N/m]. C: k = 2 sqrt(2) (E I)^(1/4) k'^(3/4), the beam
+/// of Zimmermann on pads and ballast in series k' per metre, rigid ground: 0.96e8 on the bundled tram track, 1.63e8 on
+/// the bundled high-speed track; rounded towards the softer.
 inline constexpr double usual_track_stiffness = 1e8;
 
 /// Values that are possible but unusual: one sentence each, which names object, value and range; empty if there is

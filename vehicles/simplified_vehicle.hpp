@@ -28,7 +28,8 @@ enum class VehicleDetail {
 ///
 /// P: static force of the pair's primary suspension (`compute_axle_loads`); the pair has the share s = P / (sum of P in
 /// its gear) of everything above: m_f = s m_frame, m_b = P / g - m_f, k_s and d_s = s times the gear's sums, m = P / g.
-/// So every axle load is that of the whole vehicle, and a symmetric car keeps the frequencies of its bounce. In series
+/// So every axle load is that of the whole vehicle, and `three_masses` of a symmetric car keep the poles of its bounce. In
+/// series
 ///
 ///   k = k_p k_s / (k_p + k_s),   d = (d_p k_s^2 + d_s k_p^2) / (k_p + k_s)^2
 ///

@@ -342,7 +342,7 @@ class Drawing {
       const Span span = span_of(vehicle_.bodies[i]);
       canvas_.dimension(px(span.rear), px(span.front), lengths, span.front - span.rear, pivots + 6);
     }
-    if (rows_.size() > 1) return lengths + 22;
+    if (rows_.size() > 1 || vehicle_.bodies.size() == 1) return lengths + 22;
     canvas_.dimension(px(row.rear), px(row.front), overall, row.front - row.rear, lengths + 6);
     return overall + 22;
   }
