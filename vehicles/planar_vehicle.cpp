@@ -1,7 +1,5 @@
 #include "vehicles/planar_vehicle.hpp"
 
-#include <algorithm>
-
 namespace easydyn::vehicles {
 
 PlanarVehicle::PlanarVehicle(System& system, RailVehicle data)
@@ -33,26 +31,11 @@ PlanarVehicle::PlanarVehicle(System& system, RailVehicle data)
     for (std::size_t w = 0; w < gear.wheel_pairs.size(); ++w) {
       const WheelPair& pair = gear.wheel_pairs[w];
       const WheelPairLoad& load = loads_.wheel_pairs[g][w];
-      const std::string name = pair.name;
-      const double tyre_mass = pair.resilient ? double(pair.resilient->tyre_mass) : 0.0;
-      Body& hub = system.body(name + (pair.resilient ? ", hub" : ""), Inertia(pair.mass - tyre_mass));
-      WheelPairMotion wheel{
-          &hub,
-          system.coordinate(hub.name() + ", heave"),
-          nullptr,
-          std::nullopt,
-          {name + ", primary suspension", pair.primary_stiffness, pair.primary_damping, 0, load.primary},
-          std::nullopt,
-          pair.x};
-      if (pair.resilient) {
-        wheel.tyre = &system.body(name + ", tyre", Inertia(tyre_mass));
-        wheel.tyre_heave = system.coordinate(name + ", tyre, heave");
-        wheel.resilient.emplace(name + ", resilient wheel", pair.resilient->stiffness,
-                                pair.resilient->damping, 0, load.resilient);
-      }
-      wheels_.push_back(
-          {name, wheel.tyre ? wheel.tyre : wheel.hub, pair.x, pair.radius, pair.contacts, load.axle_load});
-      motion.wheel_pairs.push_back(std::move(wheel));
+      motion.wheel_pairs.push_back({WheelPairModel(system, pair, load),
+                                    {pair.name + ", primary suspension", pair.primary_stiffness,
+                                     pair.primary_damping, 0, load.primary},
+                                    pair.x});
+      wheels_.push_back(motion.wheel_pairs.back().pair.wheel());
     }
     gears_.push_back(std::move(motion));
   }
@@ -77,10 +60,7 @@ void PlanarVehicle::place(const Expr& x) {
   for (std::size_t g = 0; g < gears_.size(); ++g) {
     GearMotion& gear = gears_[g];
     *gear.frame = translate(x + double(data_.gears[g].x), 0, gear.heave) * rotate_y(gear.pitch);
-    for (WheelPairMotion& wheel : gear.wheel_pairs) {
-      *wheel.hub = translate(x + wheel.x, 0, wheel.hub_heave);
-      if (wheel.tyre) *wheel.tyre = translate(x + wheel.x, 0, *wheel.tyre_heave);
-    }
+    for (WheelPairMotion& wheel : gear.wheel_pairs) wheel.pair.place(x);
   }
 }
 
@@ -95,18 +75,15 @@ void PlanarVehicle::apply_suspensions() {
                                 {suspension.x - data_.bodies[body].x, 0, 0});
     }
     for (WheelPairMotion& wheel : gear.wheel_pairs) {
-      wheel.primary.apply(*wheel.hub, {0, 0, 0}, *gear.frame, {wheel.x - gear_x, 0, 0});
-      if (wheel.resilient) wheel.resilient->apply(*wheel.tyre, {0, 0, 0}, *wheel.hub, {0, 0, 0});
+      wheel.primary.apply(wheel.pair.hub(), {0, 0, 0}, *gear.frame, {wheel.x - gear_x, 0, 0});
+      wheel.pair.apply_resilience();
     }
   }
 }
 
-double PlanarVehicle::front_wheel_x() const {
-  return std::max_element(wheels_.begin(), wheels_.end(), [](auto& a, auto& b) { return a.x < b.x; })->x;
-}
-
-double PlanarVehicle::rear_wheel_x() const {
-  return std::min_element(wheels_.begin(), wheels_.end(), [](auto& a, auto& b) { return a.x < b.x; })->x;
+void PlanarVehicle::hold_wheels() {
+  for (GearMotion& gear : gears_)
+    for (WheelPairMotion& wheel : gear.wheel_pairs) wheel.pair.hold();
 }
 
 }  // namespace easydyn::vehicles

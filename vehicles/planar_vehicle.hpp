@@ -1,6 +1,5 @@
 #pragma once
 
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +7,8 @@
 #include "easydyn/easydyn.hpp"
 #include "vehicles/axle_loads.hpp"
 #include "vehicles/rail_vehicle.hpp"
+#include "vehicles/vehicle_model.hpp"
+#include "vehicles/wheel_pair_model.hpp"
 
 namespace easydyn::vehicles {
 
@@ -24,33 +25,17 @@ namespace easydyn::vehicles {
 ///       void positions() override { tram.place(-30 + 8.33 * time()); }
 ///       void forces() override { gravity(vehicles::gravity); tram.apply_suspensions(); ... }
 ///     };
-class PlanarVehicle {
+class PlanarVehicle : public VehicleModel {
  public:
-  /// One wheel pair where it meets the rail.
-  struct Wheel {
-    std::string name;    ///< of the wheel pair
-    Body* body;          ///< runs on the rail: the tyre, or the hub of a solid wheel
-    double x;            ///< from the vehicle's origin [m]
-    double radius;       ///< [m]
-    int contacts;        ///< wheel/rail contacts side by side
-    double static_load;  ///< axle load in the loaded state [N]
-  };
-
   /// @throws ModelError on impossible data
   PlanarVehicle(System& system, RailVehicle data);
-  PlanarVehicle(const PlanarVehicle&) = delete;
 
-  /// Places all bodies; x = position of the vehicle's origin [m]. In System::positions().
-  void place(const Expr& x);
-  /// Applies all suspensions. In System::forces().
-  void apply_suspensions();
+  void place(const Expr& x) override;
+  void apply_suspensions() override;
+  void hold_wheels() override;
 
   const RailVehicle& data() const { return data_; }
-  const std::vector<Wheel>& wheels() const { return wheels_; }
   const AxleLoads& axle_loads() const { return loads_; }
-  double weight() const { return data_.weight(); }
-  double front_wheel_x() const;  ///< of the foremost wheel pair, from the origin [m]
-  double rear_wheel_x() const;
 
   /// Bodies in the order of the data sheet.
   const std::vector<Body*>& car_bodies() const { return car_bodies_; }
@@ -63,12 +48,8 @@ class PlanarVehicle {
     double hinge_x = 0;
   };
   struct WheelPairMotion {
-    Body* hub;
-    Coordinate hub_heave;
-    Body* tyre;  // null for a solid wheel
-    std::optional<Coordinate> tyre_heave;
+    WheelPairModel pair;
     VerticalSpringDamper primary;
-    std::optional<VerticalSpringDamper> resilient;
     double x;
   };
   struct GearMotion {
@@ -83,7 +64,6 @@ class PlanarVehicle {
   std::vector<Body*> car_bodies_, frames_;
   std::vector<CarMotion> cars_;
   std::vector<GearMotion> gears_;
-  std::vector<Wheel> wheels_;
 };
 
 }  // namespace easydyn::vehicles

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <set>
 
-#include "easydyn/math/units.hpp"
 #include "easydyn/require.hpp"
 
 namespace easydyn::vehicles {
 namespace {
-
-using namespace easydyn::units;
 
 std::string part(const RailVehicle& vehicle, std::string_view kind, std::string_view name) {
   return fmt::format("{}, {} \"{}\"", vehicle.label(), kind, name);
@@ -93,6 +90,7 @@ void validate(const RailVehicle& vehicle) {
     require_positive(object, "pitch inertia", body.pitch_inertia, "kg m2");
     require_finite(object, "x", body.x, "m");
     require_positive(object, "length", body.length, "m");
+    require_finite(object, "offset of the middle", body.middle_offset, "m");
   }
   std::set<std::string> rear_bodies;
   for (const Hinge& hinge : vehicle.hinges) {
@@ -118,32 +116,6 @@ void validate(const RailVehicle& vehicle) {
   }
 }
 
-std::vector<std::string> unusual_values(const RailVehicle& vehicle) {
-  std::vector<std::string> sentences;
-  const auto check = [&](const std::string& object, const char* quantity, double value, double low,
-                         double high, const char* unit) {
-    const double slack = 1e-9 * high;
-    if (value < low - slack || value > high + slack)
-      sentences.push_back(fmt::format("{}: {} = {:g} {} is unusual, mostly {:g} to {:g}", object, quantity,
-                                      value, unit, low, high));
-  };
-  for (const CarBody& body : vehicle.bodies)
-    check(part(vehicle, "body", body.name), "mass", body.mass, 8 * t, 60 * t, "kg");
-  for (const RunningGear& gear : vehicle.gears) {
-    const std::string object = part(vehicle, "running gear", gear.name);
-    double secondary = 0;
-    for (const SecondarySuspension& s : gear.secondaries) secondary += s.stiffness;
-    check(object, "frame mass", gear.frame_mass, 1.7 * t, 7 * t, "kg");
-    check(object, "secondary stiffness", secondary, 0.2 * MN / m, 6 * MN / m, "N/m");
-    for (const WheelPair& pair : gear.wheel_pairs) {
-      const std::string pair_name = part(vehicle, "wheel pair", pair.name);
-      check(pair_name, "mass", pair.mass, 0.35 * t, 2.3 * t, "kg");
-      check(pair_name, "primary stiffness", pair.primary_stiffness, 0.5 * MN / m, 44 * MN / m, "N/m");
-    }
-  }
-  return sentences;
-}
-
 std::vector<Parameter> parameters(const RailVehicle& vehicle) {
   std::vector<Parameter> table;
   const std::string group = vehicle.label();
@@ -156,6 +128,8 @@ std::vector<Parameter> parameters(const RailVehicle& vehicle) {
     add(body.name, "pitch inertia", body.pitch_inertia, "kg m2");
     add(body.name, "x of the centre of mass", body.x, "m");
     add(body.name, "length", body.length, "m");
+    if (body.middle_offset != 0)
+      add(body.name, "middle ahead of the centre of mass", body.middle_offset, "m");
   }
   for (const Hinge& hinge : vehicle.hinges) add(hinge.name, "x", hinge.x, "m");
   for (const RunningGear& gear : vehicle.gears) {

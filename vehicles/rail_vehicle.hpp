@@ -18,7 +18,9 @@ struct CarBody {
   Sourced mass;           ///< [kg], > 0
   Sourced pitch_inertia;  ///< about the centre of mass [kg m2], > 0
   Sourced x;              ///< of the centre of mass, in the vehicle's frame, forward [m]
-  Sourced length;         ///< for drawing, centred on x [m], > 0
+  Sourced length;         ///< for drawing [m], > 0
+  /// Of the middle of the length, ahead of the centre of mass, for drawing [m].
+  Sourced middle_offset{0, "D: centre of mass in the middle"};
 };
 
 /// Joins two neighbouring bodies: equal heights at x, free relative pitch.
@@ -52,7 +54,8 @@ struct WheelPair {
   Sourced primary_stiffness;  ///< to the frame [N/m], > 0
   Sourced primary_damping;    ///< [N s/m], >= 0
   std::optional<ResilientWheel> resilient;
-  int contacts = 2;  ///< wheel/rail contacts side by side
+  int contacts = 2;                 ///< wheel/rail contacts side by side
+  bool has_rubber_primary = false;  ///< rubber springs may be stiffer than coils; for unusual_values() alone
 };
 
 /// Bogie or running gear: a frame on one or more wheel pairs, under one or more bodies.
@@ -90,9 +93,24 @@ struct RailVehicle {
 /// @throws ModelError on impossible values: object, quantity, value and accepted range are named
 void validate(const RailVehicle& vehicle);
 
-/// Values that are possible but unusual: one sentence each, empty if there is none. The ranges (D): body 8-60
-/// t, frame 1.7-7 t, wheel pair 0.35-2.3 t, primary 0.5-44 MN/m per pair, secondary 0.2-6 MN/m per gear.
-std::vector<std::string> unusual_values(const RailVehicle& vehicle);
+/// Stiffness of a track under one wheel pair, both rails together [N/m]. C: k = 2 sqrt(2) (E I)^(1/4) k'^(3/4), the beam
+/// of Zimmermann on pads and ballast in series k' per metre, rigid ground: 0.96e8 on the bundled tram track, 1.63e8 on
+/// the bundled high-speed track; rounded towards the softer.
+inline constexpr double usual_track_stiffness = 1e8;
+
+/// Values that are possible but unusual: one sentence each, which names object, value and range; empty if there is
+/// none. The ranges (D):
+///
+///   body 8-60 t, frame 1.7-7 t, wheel pair 0.35-2.3 t
+///   primary 0.5-5 MN/m per pair, of rubber to 44 MN/m; secondary 0.2-6 MN/m per gear
+///   modes on rigid rails (vehicle_modes.hpp) in which a body moves most: 0.4-2 Hz
+///   modes in which a frame bounces most: 4-12 Hz, on rubber primaries to 40 Hz
+///   the whole wheel pair, mass m, on the track: sqrt(k / m) / (2 pi) from 30 to 90 Hz
+///
+/// @param track_stiffness  k, under one wheel pair [N/m], > 0
+/// @throws ModelError on impossible data, as compute_axle_loads()
+std::vector<std::string> unusual_values(const RailVehicle& vehicle,
+                                        double track_stiffness = usual_track_stiffness);
 
 /// Every value with its unit and its provenance, for the report.
 std::vector<Parameter> parameters(const RailVehicle& vehicle);

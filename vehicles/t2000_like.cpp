@@ -22,7 +22,8 @@ WheelPair driven_pair(const std::string& name, double x) {
           .primary_damping = {18 * kN * s / m, recalled},
           .resilient = ResilientWheel{.tyre_mass = {0.20 * t, estimate},
                                       .stiffness = {145 * MN / m, recalled},
-                                      .damping = {3 * kN * s / m, recalled}}};
+                                      .damping = {3 * kN * s / m, recalled}},
+          .has_rubber_primary = true};
 }
 
 WheelPair trailing_pair(const std::string& name, double x) {

@@ -36,6 +36,7 @@ void add_vehicle(visu::Scene& scene, const RailVehicle& vehicle, const VehicleMo
                            .shape = visu::Shape::box,
                            .size = {car.length - 0.15, heights.width, heights.body_height},
                            .colour = "#4477aa",
+                           .offset = {Vector3d(car.middle_offset, 0, 0)},
                            .opacity = 0.55});
   }
 
