@@ -28,6 +28,7 @@
 #include "easydyn/visu/report.hpp"
 #include "track/passage.hpp"
 #include "track/track_scene.hpp"
+#include "track/wheel_rail_contact.hpp"
 #include "vehicles/planar_vehicle.hpp"
 #include "vehicles/two_bogie_car.hpp"
 #include "vehicles/vehicle_drawing.hpp"
@@ -111,7 +112,7 @@ int main() try {
   vehicles::write_vehicle_drawing("my_vehicle.svg", data);
 
   // 4. Passage.
-  std::vector<const track::WheelRailContact*> contacts;
+  std::vector<const track::TrackContact*> contacts;
   for (const auto& contact : system.contacts) contacts.push_back(&contact);
   const track::Passage passage = track::compute_passage(
       system, system.rails, contacts,

@@ -32,6 +32,7 @@
 #include "track/passage.hpp"
 #include "track/passage_files.hpp"
 #include "track/track_scene.hpp"
+#include "track/wheel_rail_contact.hpp"
 #include "vehicles/planar_vehicle.hpp"
 #include "vehicles/t2000_like.hpp"
 #include "vehicles/vehicle_scene.hpp"
@@ -131,7 +132,7 @@ int run(const Options& options, const std::string& command) {
 
   // 2. The system, 3. its passage.
   TramOnTrack system(track_model, x0, v, profile);
-  std::vector<const track::WheelRailContact*> contacts;
+  std::vector<const track::TrackContact*> contacts;
   for (const auto& c : system.contacts) contacts.push_back(&c);
   track::PassageOptions passage_options;
   passage_options.duration = -2 * x0 / v;

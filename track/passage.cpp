@@ -19,8 +19,7 @@ namespace {
 class PassageRecorder {
  public:
   PassageRecorder(System& system, const FlexibleTrack& track,
-                  const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
-                  Index rows)
+                  const std::vector<const TrackContact*>& contacts, const PassageOptions& options, Index rows)
       : system_(system), track_(track), contacts_(contacts) {
     const TrackModel& model = track.model();
     for (int j = 0; j < model.sleepers(); ++j)
@@ -50,7 +49,7 @@ class PassageRecorder {
     p_.contact_loss_time.setZero(nw);
     p_.longest_contact_loss.setZero(nw);
     losses_.resize(contacts.size());
-    for (const WheelRailContact* c : contacts) p_.contact_names.push_back(c->name());
+    for (const TrackContact* c : contacts) p_.contact_names.push_back(c->name());
     p_.coordinates.resize(rows, system.body_size());
     for (int i = 0; i < system.body_size(); ++i) p_.coordinate_names.push_back(system.coordinate_name(i));
     p_.body_acceleration.resize(rows, nb);
@@ -134,7 +133,7 @@ class PassageRecorder {
  private:
   System& system_;
   const FlexibleTrack& track_;
-  const std::vector<const WheelRailContact*>& contacts_;
+  const std::vector<const TrackContact*>& contacts_;
   std::vector<int> sleepers_;
   std::vector<ContactLossCounter> losses_;
   bool has_foundation_ = false, has_last_ = false;
@@ -188,7 +187,7 @@ void run_with_kernel(System& system, const FlexibleTrack& track, const State& st
 
 template <class Run>
 void run_with_window(System& system, const FlexibleTrack& track,
-                     const std::vector<const WheelRailContact*>& contacts, const State& start,
+                     const std::vector<const TrackContact*>& contacts, const State& start,
                      const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
   PassageStepper stepper(system, track, {contacts.begin(), contacts.end()}, start,
                          {.step = options.step, .window = options.window});
@@ -212,7 +211,7 @@ void run_with_window(System& system, const FlexibleTrack& track,
 }  // namespace
 
 Passage compute_passage(System& system, const FlexibleTrack& track,
-                        const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
+                        const std::vector<const TrackContact*>& contacts, const PassageOptions& options,
                         const std::function<void(double)>& progress) {
   require_positive("passage", "duration", options.duration, "s");
   require_positive("passage", "time step", options.step, "s");

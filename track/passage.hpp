@@ -7,7 +7,7 @@
 
 #include "track/flexible_track.hpp"
 #include "track/passage_stepper.hpp"
-#include "track/wheel_rail_contact.hpp"
+#include "track/track_contact.hpp"
 
 namespace easydyn::track {
 
@@ -63,7 +63,7 @@ struct Passage {
 /// @param progress  called with the fraction done
 /// @throws ModelError on impossible options, SolverError if a step does not converge
 Passage compute_passage(System& system, const FlexibleTrack& track,
-                        const std::vector<const WheelRailContact*>& contacts, const PassageOptions& options,
+                        const std::vector<const TrackContact*>& contacts, const PassageOptions& options,
                         const std::function<void(double fraction)>& progress = {});
 
 }  // namespace easydyn::track

@@ -13,6 +13,10 @@ using Eigen::VectorXd;
 
 namespace {
 
+// Magnitudes below which an unknown counts as zero: m/s^2 or rad/s^2, N. Rounding of forces of 5e5 N moves a wheel pair
+// by 1e-13 m/s^2.
+constexpr double acceleration_floor = 1e-2, force_floor = 1;
+
 int bays_of(const TrackModel& model, double length) {
   require_not_negative(model.data().label(), "window", length, "m");
   return static_cast<int>(std::ceil(length / model.data().sleeper_spacing));
@@ -86,7 +90,6 @@ int PassageStepper::wanted_first_bay() const {
   int least = std::numeric_limits<int>::max(), largest = 0;
   const int per_bay = track_.model().sleeper_dof(1) - track_.model().sleeper_dof(0);
   for (std::size_t p = 0; p < shapes_.size(); ++p) {
-    if (!contacts_[p]->body()) continue;
     least = std::min(least, shapes_[p].index[0] / per_bay);
     largest = std::max(largest, shapes_[p].index[0] / per_bay);
   }
@@ -137,7 +140,7 @@ void PassageStepper::compute_jacobian() {
     qdd_[i] = trial[i];
   }
   evaluate();
-  inverse_ = J.partialPivLu().inverse();
+  inverse_ = n > 0 ? MatrixXd(J.partialPivLu().inverse()) : J;
   body_response_ = B_ * inverse_ * B_.transpose();
   jacobian_known_ = true;
   ++statistics_.jacobians;
@@ -186,8 +189,8 @@ void PassageStepper::find_contact_forces() {
         d = next;
         if (is_done) break;
       }
-      const double F = (free - d) / p;
-      largest_change = std::max(largest_change, std::abs(F - F_[i]) / std::max(std::abs(F), 1.0));
+      const double F = contact.force_after(d, 2 / h * d).F;
+      largest_change = std::max(largest_change, std::abs(F - F_[i]) / std::max(std::abs(F), force_floor));
       F_[i] = F;
     }
     if (largest_change <= 0.01 * options_.tolerance) break;
@@ -229,9 +232,9 @@ void PassageStepper::step() {
     correction_.noalias() = inverse_ * lift_;
     double error = 0;
     for (Eigen::Index i = 0; i < correction_.size(); ++i)
-      error = std::max(error, std::abs(correction_[i]) / std::max(std::abs(qdd_[i]), 1e-3));
+      error = std::max(error, std::abs(correction_[i]) / std::max(std::abs(qdd_[i]), acceleration_floor));
     for (Eigen::Index p = 0; p < F_.size(); ++p)
-      error = std::max(error, std::abs(F_evaluated_[p] - F_[p]) / std::max(std::abs(F_[p]), 1.0));
+      error = std::max(error, std::abs(F_evaluated_[p] - F_[p]) / std::max(std::abs(F_[p]), force_floor));
     // Smaller than that, and no longer falling: the last digits of the displacements.
     const bool is_rounding = error <= 1e-3 * std::sqrt(options_.tolerance) && error >= 0.5 * previous;
     if (error <= options_.tolerance || is_rounding) break;
@@ -240,7 +243,7 @@ void PassageStepper::step() {
           fmt::format("passage: no convergence at t = {} s with step {} s after {} iterations, last "
                       "relative correction {:.3g}; try a smaller step",
                       t_, h, iteration, error));
-    if (error > 0.1 * previous) {
+    if (error > 0.1 * previous && error > 1e-6) {
       compute_jacobian();
       update_responses();
     }

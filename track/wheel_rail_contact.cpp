@@ -9,13 +9,13 @@ namespace easydyn::track {
 
 WheelRailContact::WheelRailContact(std::string name, const HertzContact& law, double wheel_radius,
                                    double static_load, std::shared_ptr<const Profile> profile)
-    : name_(std::move(name)),
+    : TrackContact(std::move(name)),
       law_(law),
       radius_(wheel_radius),
       static_load_(static_load),
       static_indentation_(law.indentation_under(static_load)),
       profile_(std::move(profile)) {
-  const std::string object = "contact \"" + name_ + "\"";
+  const std::string object = "contact \"" + this->name() + "\"";
   require_positive(object, "wheel radius", wheel_radius, "m");
   require_not_negative(object, "static load", static_load, "N");
   if (!profile_) throw ModelError(object + ": there is no rail profile");
@@ -23,7 +23,7 @@ WheelRailContact::WheelRailContact(std::string name, const HertzContact& law, do
 
 void WheelRailContact::set_wheel_shape(std::shared_ptr<const WheelShape> shape,
                                        const WheelShapeOptions& options) {
-  const std::string object = "contact \"" + name_ + "\", wheel shape";
+  const std::string object = "contact \"" + this->name() + "\", wheel shape";
   require_finite(object, "phase", options.phase, "rad");
   require_finite(object, "fade_begin", options.fade_begin, "m");
   require_not_negative(object, "fade_length", options.fade_length, "m");

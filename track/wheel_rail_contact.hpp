@@ -53,11 +53,7 @@ class WheelRailContact : public TrackContact {
   /// Path r of the wheel centre at x over a rail at rest: profile and wheel shape.
   ProfilePoint path_at(double x) const;
 
-  const std::string& name() const { return name_; }
   double static_load() const { return static_load_; }
-  double force() const { return force_; }  ///< at the last evaluation [N]
-  double x() const { return x_; }          ///< at the last evaluation [m]
-  bool is_closed() const { return force_ > 0; }
 
   Force force_after(double change, double rate_change) const override;
   /// The wheel of the last evaluation.
@@ -69,14 +65,13 @@ class WheelRailContact : public TrackContact {
   };
   void apply_to_wheel(const Body& wheel, const RailMotion& rail);
 
-  std::string name_;
   HertzContact law_;
   double radius_, static_load_, static_indentation_;
   std::shared_ptr<const Profile> profile_;
   std::shared_ptr<const WheelShape> shape_;
   WheelShapeOptions shape_options_;
   // At the last evaluation.
-  double force_ = 0, x_ = 0, indentation_ = 0;
+  double indentation_ = 0;
   const Body* wheel_ = nullptr;
 };
 

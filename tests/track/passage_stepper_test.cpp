@@ -9,6 +9,7 @@
 
 #include "easydyn/easydyn.hpp"
 #include "track/passage.hpp"
+#include "track/wheel_rail_contact.hpp"
 
 namespace easydyn::track {
 namespace {
@@ -55,8 +56,8 @@ class Train : public System {
   FlexibleTrack track;
   std::deque<WheelRailContact> contacts;
 
-  std::vector<const WheelRailContact*> contact_list() const {
-    std::vector<const WheelRailContact*> list;
+  std::vector<const TrackContact*> contact_list() const {
+    std::vector<const TrackContact*> list;
     for (const WheelRailContact& c : contacts) list.push_back(&c);
     return list;
   }

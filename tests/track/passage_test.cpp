@@ -7,6 +7,7 @@
 #include "easydyn/easydyn.hpp"
 #include "tests/reference/winkler_beam.hpp"
 #include "track/foundation.hpp"
+#include "track/wheel_rail_contact.hpp"
 
 namespace {
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "track/passage.hpp"
+#include "track/wheel_rail_contact.hpp"
 #include "vehicles/planar_vehicle.hpp"
 #include "vehicles/t2000_like.hpp"
 
@@ -34,7 +35,7 @@ class TramOnTrack : public System {
 TEST(TramPassage, BeginsWithoutATransientOnAPerfectRail) {
   for (const double x0 : {-8.0, -7.79, -7.6}) {  // anywhere between two sleepers
     TramOnTrack system(x0);
-    std::vector<const track::WheelRailContact*> contacts;
+    std::vector<const track::TrackContact*> contacts;
     for (const auto& c : system.contacts) contacts.push_back(&c);
     const track::Passage p = track::compute_passage(
         system, system.rail, contacts,
