@@ -19,6 +19,8 @@ class FlexibleTrack {
   /// (downward), slope() is w', a force on the port pushes the rail down.
   /// @throws ModelError if x is off the rail
   Port touch_rail(double x) const;
+  /// Touches any of the track's coordinates, e.g. the ballast of a hanging sleeper; within System::forces().
+  Port touch(const PortShape& shape) const { return system_.touch(structure_, shape); }
 
   /// The track's part of a state: a view on its coordinates (or rates).
   Eigen::VectorXd coordinates(const Eigen::VectorXd& q) const;

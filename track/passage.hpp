@@ -59,7 +59,8 @@ struct Passage {
 /// With a window the cost of a step does not depend on the length of the track. What the window leaves behind is at rest,
 /// and recorded so. Energies: kinetic and potential ones of bodies, contacts and the window; works by the trapezoidal rule
 /// for bodies and contacts, exactly as Newmark's method has it for the track.
-/// @param contacts  those that the system applies, in the order in which it does
+/// @param contacts  wheels and loads on the rail, in the order in which the system applies them; the ballast of hanging
+///                  sleepers needs no mention
 /// @param progress  called with the fraction done
 /// @throws ModelError on impossible options, SolverError if a step does not converge
 Passage compute_passage(System& system, const FlexibleTrack& track,

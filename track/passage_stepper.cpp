@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "easydyn/require.hpp"
 
@@ -13,9 +14,9 @@ using Eigen::VectorXd;
 
 namespace {
 
-// Magnitudes below which an unknown counts as zero: m/s^2 or rad/s^2, N. Rounding of forces of 5e5 N moves a wheel pair
-// by 1e-13 m/s^2.
-constexpr double acceleration_floor = 1e-2, force_floor = 1;
+// Magnitudes below which an unknown counts as zero: m/s^2 or rad/s^2, N. Forces of 1e5 N at lever arms of a train's length,
+// 200 m, leave a bogie's pitch to 2e-11 rad/s^2.
+constexpr double acceleration_floor = 1, force_floor = 1;
 
 int bays_of(const TrackModel& model, double length) {
   require_not_negative(model.data().label(), "window", length, "m");
@@ -29,7 +30,6 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
                                const PassageStepperOptions& options)
     : system_(system),
       track_(track),
-      contacts_(std::move(contacts)),
       options_(options),
       window_(track.model(), bays_of(track.model(), options.window), options.step),
       t_(start.t) {
@@ -48,10 +48,22 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
   // The first evaluation tells where the track is touched, and the forces.
   system_.evaluate(start);
   const auto& ports = system_.ports();
-  if (ports.size() != contacts_.size())
-    throw ModelError(
-        fmt::format("passage: system \"{}\" touches the track in {} places, {} contacts are given",
-                    system.name(), ports.size(), contacts_.size()));
+  const TrackModel& model = track.model();
+  const std::vector<int>& hanging = model.hanging_sleepers();
+  std::map<int, int> sleeper_at;  // by the first coordinate that its ballast touches
+  for (const int j : hanging) sleeper_at[model.ballast_shape(j).index[0]] = j;
+  std::size_t next_contact = 0;
+  for (const System::PortRecord& port : ports) {
+    const auto sleeper = sleeper_at.find(port.shape.index[0]);
+    if (sleeper != sleeper_at.end())
+      partners_.push_back({nullptr, model.unilateral_ballast(sleeper->second), -1});
+    else if (next_contact++ < contacts.size())
+      partners_.push_back({contacts[next_contact - 1], {}, 1});
+  }
+  if (ports.size() != contacts.size() + hanging.size() || next_contact != contacts.size())
+    throw ModelError(fmt::format(
+        "passage: system \"{}\" touches the track in {} places, {} contacts are given and {} sleepers hang",
+        system.name(), ports.size(), contacts.size(), hanging.size()));
   const auto n_ports = static_cast<Eigen::Index>(ports.size());
   F_.resize(n_ports);
   for (std::size_t p = 0; p < ports.size(); ++p) {
@@ -62,6 +74,7 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
   F_evaluated_ = F_;
   residual_.resize(n);
   track_response_.setZero(n_ports, n_ports);
+  slope_response_.setZero(n_ports, n_ports);
 
   window_.set_state(window_.is_whole_track() ? 0 : wanted_first_bay(), track.coordinates(start.q),
                     track.coordinates(start.qd), track.coordinates(start.qdd));
@@ -78,8 +91,7 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
       if (y == 0) continue;
       motion.displacement += 0.25 * h * h * y;
       motion.velocity += 0.5 * h * y;
-      motion.slope +=
-          0.25 * h * h * window_.slope_response(shape, shapes_[static_cast<std::size_t>(j)]) * F_[j];
+      motion.slope += 0.25 * h * h * slope_response_(i, j) * F_[j];
     }
     return motion;
   };
@@ -88,8 +100,9 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
 // The contacts in the middle; a bay is left behind when the middle has moved by one.
 int PassageStepper::wanted_first_bay() const {
   int least = std::numeric_limits<int>::max(), largest = 0;
-  const int per_bay = track_.model().sleeper_dof(1) - track_.model().sleeper_dof(0);
+  const int per_bay = track_.model().dofs_per_bay();
   for (std::size_t p = 0; p < shapes_.size(); ++p) {
+    if (!partners_[p].contact) continue;
     least = std::min(least, shapes_[p].index[0] / per_bay);
     largest = std::max(largest, shapes_[p].index[0] / per_bay);
   }
@@ -123,7 +136,7 @@ void PassageStepper::compute_jacobian() {
   const int n = system_.body_size();
   B_.setZero(F_.size(), n);
   for (Eigen::Index p = 0; p < F_.size(); ++p) {
-    const Body* const body = contacts_[static_cast<std::size_t>(p)]->body();
+    const Body* const body = partners_[static_cast<std::size_t>(p)].body();
     if (!body) continue;
     const ExprVector at = body->frame().express_point(Eigen::Vector3d::Zero());
     for (const Gradient::Entry& g : at[2].gradient())
@@ -133,7 +146,7 @@ void PassageStepper::compute_jacobian() {
   const VectorXd residual = residual_, trial = qdd_;
   MatrixXd J(n, n);
   for (int i = 0; i < n; ++i) {
-    const double delta = 1e-2 * std::max(1.0, std::abs(trial[i]));
+    const double delta = 100;  // [m/s^2]: the bodies are nearly linear, and rounding stays small
     qdd_[i] = trial[i] + delta;
     evaluate();
     J.col(i) = (residual_ - residual) / delta;
@@ -148,12 +161,27 @@ void PassageStepper::compute_jacobian() {
 
 void PassageStepper::update_responses() {
   for (Eigen::Index i = 0; i < F_.size(); ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      track_response_(i, j) = track_response_(j, i) =
-          window_.response(shapes_[static_cast<std::size_t>(i)], shapes_[static_cast<std::size_t>(j)]);
+    for (Eigen::Index j = 0; j < F_.size(); ++j) {
+      const PortShape &at = shapes_[static_cast<std::size_t>(i)], &of = shapes_[static_cast<std::size_t>(j)];
+      slope_response_(i, j) = window_.slope_response(at, of);
+      if (j > i) continue;
+      track_response_(i, j) = track_response_(j, i) = window_.response(at, of);
+    }
   const double h = options_.step;
   response_ = 0.25 * h * h * (track_response_ + body_response_);
   knows_responses_ = true;
+}
+
+TrackContact::Force PassageStepper::force_after(std::size_t port, double change, double rate_change) const {
+  const Partner& partner = partners_[port];
+  if (partner.contact) return partner.contact->force_after(change, rate_change);
+  const PortMotion& motion = system_.ports()[port].motion;
+  const double compression = motion.displacement + change, rate = motion.velocity + rate_change;
+  const UnilateralBallast& ballast = partner.ballast;
+  const double F = ballast.force(compression, rate);
+  if (F == 0) return {};
+  return {F, ballast.stiffness,
+          std::min(1.0, (compression - ballast.gap) / (0.1 * ballast.gap)) * ballast.damping};
 }
 
 // Forces that agree with the approaches that they leave, from the forces of the last evaluation. correction_ holds the
@@ -161,11 +189,12 @@ void PassageStepper::update_responses() {
 void PassageStepper::find_contact_forces() {
   const double h = options_.step;
   const Eigen::Index n = F_.size();
-  // Change of each approach, from the one evaluated to the one without any contact force.
+  // Change of each approach, from the one evaluated to the one without any force; it falls as the port moves in the
+  // direction of its force.
   approach_.resize(n);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const System::PortRecord& port = system_.ports()[static_cast<std::size_t>(i)];
-    approach_[i] = port.motion.displacement - free_[static_cast<std::size_t>(i)].displacement;
+    const auto p = static_cast<std::size_t>(i);
+    approach_[i] = partners_[p].direction * (system_.ports()[p].motion.displacement - free_[p].displacement);
   }
   approach_.noalias() -= 0.25 * h * h * (B_ * correction_);
 
@@ -174,22 +203,21 @@ void PassageStepper::find_contact_forces() {
     double largest_change = 0;
     for (Eigen::Index i = 0; i < n; ++i) {
       // d + p F(a + d) = free, monotone in the change d of the approach: Newton within brackets.
-      const double p = response_(i, i), free = approach_[i] - (response_.row(i).dot(F_) - p * F_[i]);
-      const TrackContact& contact = *contacts_[static_cast<std::size_t>(i)];
-      double d = free - p * F_[i], low = -std::numeric_limits<double>::infinity(), high = free;
-      TrackContact::Force law;
+      const auto port = static_cast<std::size_t>(i);
+      const double direction = partners_[port].direction, p = response_(i, i);
+      const double free = approach_[i] - direction * (response_.col(i).dot(F_) - p * F_[i]);
+      double d = free - p * direction * F_[i], low = -std::numeric_limits<double>::infinity(), high = free;
       for (int k = 0; k < most_iterations; ++k) {
-        law = contact.force_after(d, 2 / h * d);
+        const TrackContact::Force law = force_after(port, d, 2 / h * d);
         const double miss = d + p * law.F - free;
         (miss > 0 ? high : low) = d;
-        const double slope = 1 + p * (law.stiffness + 2 / h * law.damping);
-        double next = d - miss / slope;
+        double next = d - miss / (1 + p * (law.stiffness + 2 / h * law.damping));
         if (!(next >= low && next <= high)) next = std::isfinite(low) ? 0.5 * (low + high) : high;
-        const bool is_done = std::abs(next - d) <= 1e-15 * (std::abs(free) + std::abs(d)) || next == d;
+        const bool is_done = std::abs(next - d) <= 1e-15 * (std::abs(free) + std::abs(d));
         d = next;
         if (is_done) break;
       }
-      const double F = contact.force_after(d, 2 / h * d).F;
+      const double F = direction * force_after(port, d, 2 / h * d).F;
       largest_change = std::max(largest_change, std::abs(F - F_[i]) / std::max(std::abs(F), force_floor));
       F_[i] = F;
     }

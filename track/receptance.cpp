@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
+#include <cmath>
 #include <complex>
 
 #include "easydyn/math/units.hpp"
@@ -51,6 +52,33 @@ Eigen::VectorXcd compute_rail_receptance(const TrackModel& track, double x_load,
   Eigen::VectorXcd w = Eigen::VectorXcd::Zero(q.cols());
   for (int i = 0; i < 4; ++i) w += point.shape.N[i] * q.row(point.dof[i]).transpose();
   return w;
+}
+
+Eigen::VectorXcd compute_sleeper_receptance(const TrackModel& track, double x_load, int j,
+                                            std::span<const double> frequencies) {
+  return compute_harmonic_response(track, track.rail_load(x_load, 1), frequencies).row(track.sleeper_dof(j));
+}
+
+Eigen::VectorXd compute_decay_rate(const TrackModel& track, double x_load,
+                                   std::span<const double> frequencies) {
+  const TrackData& data = track.data();
+  const double spacing = data.sleeper_spacing, step = spacing / data.elements_per_bay;
+  const double last = track.end() - data.ends.bays * spacing;
+  require(
+      x_load >= track.begin() && x_load <= last - spacing, data.label(), "x of the force for the decay rate",
+      x_load, "m",
+      fmt::format("between {:g} and {:g}, a bay before the absorbing ones", track.begin(), last - spacing));
+  const Eigen::MatrixXcd q = compute_harmonic_response(track, track.rail_load(x_load, 1), frequencies);
+  const auto squared = [&](double x) {
+    const RailPoint point = track.rail_point(x);
+    Eigen::VectorXcd w = Eigen::VectorXcd::Zero(q.cols());
+    for (int i = 0; i < 4; ++i) w += point.shape.N[i] * q.row(point.dof[i]).transpose();
+    return Eigen::VectorXd(w.cwiseAbs2());
+  };
+  const Eigen::VectorXd at_load = squared(x_load);
+  Eigen::VectorXd sum = 0.5 * step * at_load;
+  for (int n = 1; x_load + n * step <= last; ++n) sum += step * squared(x_load + n * step);
+  return 10 / std::log(10.0) * at_load.cwiseQuotient(sum);
 }
 
 }  // namespace easydyn::track

@@ -10,44 +10,11 @@ namespace easydyn::track {
 using Eigen::VectorXd;
 
 namespace {
-
-// What the absorbing ends add to C of a track of so many bays.
-SparseMatrix compute_end_damping(const TrackData& data, int bays) {
-  require(bays >= 2 * data.ends.bays + 2, data.label(), "window", bays * data.sleeper_spacing, "m",
-          fmt::format(">= {:g}, two absorbing ends of {} bays and two bays between them",
-                      (2 * data.ends.bays + 2) * data.sleeper_spacing.value, data.ends.bays));
-  TrackData without = data;
-  without.ends.bays = 0;
-  SparseMatrix E = SparseMatrix(TrackModel(data, bays).C() - TrackModel(without, bays).C());
-  E.prune(0.0);
-  return E;
+constexpr int block_padding = 2;  // makes 12 of the 10 rows of a usual bay: three vectors of four
 }
 
-// Whether two rows agree when the second is shifted back by `shift`.
-bool rows_agree(const SparseMatrix& A, int row, int shift, double scale) {
-  SparseMatrix::InnerIterator a(A, row), b(A, row + shift);
-  for (; a && b; ++a, ++b)
-    if (a.col() + shift != b.col() || !(std::abs(a.value() - b.value()) <= 1e-12 * scale)) return false;
-  return !a && !b;
-}
-
-// Whether all bays between the absorbing ends are alike.
-bool has_like_bays(const TrackModel& model, int per_bay) {
-  const int margin = model.data().ends.bays + 1;
-  for (const auto* matrix : {&model.M(), &model.C(), &model.K()}) {
-    const SparseMatrix A = *matrix;
-    const double scale = A.nonZeros() > 0 ? A.coeffs().abs().maxCoeff() : 0;
-    for (int bay = margin; bay + 1 < model.bays() - margin; ++bay)
-      for (int r = 0; r < per_bay; ++r)
-        if (!rows_agree(A, bay * per_bay + r, per_bay, scale)) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-TrackWindow::Rows::Rows(const SparseMatrix& A) {
-  begin.reserve(static_cast<std::size_t>(A.rows()) + 1);
+TrackWindow::Product::Product(const SparseMatrix& A, const TrackModel& model, bool is_uniform_)
+    : per_bay(model.dofs_per_bay()), bays(model.bays()), is_uniform(is_uniform_ && model.bays() >= 3) {
   begin.push_back(0);
   for (int i = 0; i < A.rows(); ++i) {
     for (SparseMatrix::InnerIterator it(A, i); it; ++it) {
@@ -57,39 +24,78 @@ TrackWindow::Rows::Rows(const SparseMatrix& A) {
     }
     begin.push_back(static_cast<int>(column.size()));
   }
+  if (!is_uniform) return;
+  const int start = bays / 2 * per_bay;
+  for (int c = 0; c < 3 * per_bay; ++c) {
+    VectorXd rows = VectorXd::Zero(per_bay);
+    for (int r = 0; r < per_bay; ++r) rows[r] = A.coeff(start + r, start - per_bay + c);
+    if (rows.isZero(0)) continue;
+    block_columns.push_back(c);
+    block.insert(block.end(), rows.begin(), rows.end());
+    block.resize(block.size() + block_padding, 0.0);
+  }
 }
 
-template <class Use>
-void TrackWindow::Rows::for_each_row(int offset, int size, int padding, const double* x, Use use) const {
-  const double* const shifted = x + padding - offset;
-  for (int i = 0; i < size; ++i) {
-    const auto row = static_cast<std::size_t>(offset + i);
-    double sum = 0;
-    for (int k = begin[row]; k < begin[row + 1]; ++k)
-      sum += value[static_cast<std::size_t>(k)] * shifted[column[static_cast<std::size_t>(k)]];
-    use(i, sum);
+void TrackWindow::Product::subtract_row(int row, const double* x, double& y) const {
+  double sum = 0;
+  for (int k = begin[static_cast<std::size_t>(row)]; k < begin[static_cast<std::size_t>(row) + 1]; ++k)
+    sum += value[static_cast<std::size_t>(k)] * x[column[static_cast<std::size_t>(k)]];
+  y -= sum;
+}
+
+void TrackWindow::Product::subtract(int offset, int size, int padding, const double* x, double* y) const {
+  const double* const x_of_column = x + padding - offset;
+  double* const y_of_row = y + padding - offset;
+  // The first and the last bay of the track are not like the others; windows begin with a bay.
+  const int dense_begin = is_uniform ? std::max(offset, per_bay) : offset + size;
+  const int dense_bays = std::max(0, (std::min(offset + size, (bays - 1) * per_bay) - dense_begin) / per_bay);
+  for (int row = offset; row < std::min(dense_begin, offset + size); ++row)
+    subtract_row(row, x_of_column, y_of_row[row]);
+  const std::size_t stride = static_cast<std::size_t>(per_bay) + block_padding;
+  for (int bay = 0; bay < dense_bays; ++bay) {
+    const int start = dense_begin + bay * per_bay;
+    double* const rows = y_of_row + start;
+    const double* const around = x_of_column + start - per_bay;
+    if (per_bay == 10) {  // four elements per bay on a foundation: a size that the compiler knows
+      using Sum = Eigen::Array<double, 10 + block_padding, 1>;
+      Sum sum = Sum::Zero();
+      for (std::size_t k = 0; k < block_columns.size(); ++k)
+        sum += around[block_columns[k]] * Sum::Map(block.data() + k * stride);
+      Eigen::Array<double, 10, 1>::Map(rows) -= sum.head<10>();
+    } else {
+      for (std::size_t k = 0; k < block_columns.size(); ++k)
+        VectorXd::Map(rows, per_bay) -=
+            around[block_columns[k]] * VectorXd::Map(block.data() + k * stride, per_bay);
+    }
   }
+  if (!is_uniform) return;
+  for (int row = std::max(offset, dense_begin + dense_bays * per_bay); row < offset + size; ++row)
+    subtract_row(row, x_of_column, y_of_row[row]);
 }
 
 TrackWindow::TrackWindow(const TrackModel& model, int bays, double step)
     : model_(model),
       bays_(bays > 0 && bays + 2 <= model.bays() ? bays : model.bays()),
-      per_bay_(model.sleepers() > 1 ? model.sleeper_dof(1) - model.sleeper_dof(0) : model.size()),
-      size_(model.size() - (model.bays() - bays_) * per_bay_),
-      padding_(model.half_bandwidth()),
+      per_bay_(model.dofs_per_bay()),
+      size_(model.dofs_of(bays_)),
+      padding_(2 * model.dofs_per_bay()),
       h_(step),
-      is_uniform_(has_like_bays(model, per_bay_)),
       M_(model.M()),
-      C_(is_whole_track()
-             ? SparseMatrix(model.C())
-             : SparseMatrix(SparseMatrix(model.C()) - compute_end_damping(model.data(), model.bays()))),
+      C_(is_whole_track() ? model.C() : model.inner_damping()),
       K_(model.K()),
-      end_damping_(is_whole_track() ? SparseMatrix(size_, size_) : compute_end_damping(model.data(), bays_)),
-      C_rows_(C_),
-      K_rows_(K_),
-      end_rows_(end_damping_) {
+      end_damping_(size_, size_),
+      C_product_(C_, model, model.is_uniform() && !is_whole_track()),
+      K_product_(K_, model, model.is_uniform()) {
   require_positive(model.data().label(), "time step", step, "s");
-  for (VectorXd* v : {&q_, &qd_, &y_, &before_}) v->setZero(size_ + 2 * padding_);
+  if (!is_whole_track()) {
+    const int ends = model.data().ends.bays;
+    require(bays_ >= 2 * ends + 2, model.data().label(), "window", bays_ * model.data().sleeper_spacing, "m",
+            fmt::format(">= {:g}, two absorbing ends of {} bays and two bays between them",
+                        (2 * ends + 2) * model.data().sleeper_spacing.value, ends));
+    end_damping_ = model.compute_end_damping(bays_);
+    end_damping_.prune(0.0);
+  }
+  for (VectorXd* v : {&q_, &qd_, &y_, &rate_before_}) v->setZero(size_ + 2 * padding_);
   first_bay_ = is_whole_track() ? 0 : 1;
   offset_ = first_bay_ * per_bay_;
   factorise();
@@ -146,7 +152,7 @@ const TrackWindow::Table& TrackWindow::table_of(int bay) {
   const int margin = model_.data().ends.bays + reach_;
   const bool is_interior = bay - first_bay_ > margin && first_bay_ + bays_ - bay > margin;
   // One table serves all like bays.
-  const int stored = is_uniform_ && is_interior ? -2 : bay;
+  const int stored = model_.is_uniform() && is_interior ? -2 : bay;
   const auto slot = stored == -2 ? tables_.size() - 1 : static_cast<std::size_t>(bay % bays_);
   Table& table = tables_[slot];
   if (table.bay == stored) return table;
@@ -167,7 +173,7 @@ std::size_t TrackWindow::memory() const {
   std::size_t doubles = 4 * static_cast<std::size_t>(q_.size()) +
                         2 * static_cast<std::size_t>(size_) * static_cast<std::size_t>(padding_ + 1);
   for (const Table& table : tables_) doubles += table.columns.size();
-  for (const Rows* rows : {&C_rows_, &K_rows_, &end_rows_}) doubles += 2 * rows->value.size();
+  for (const Product* product : {&C_product_, &K_product_}) doubles += 2 * product->value.size();
   return 8 * doubles;
 }
 
@@ -201,21 +207,31 @@ void TrackWindow::move_to(int first_bay) {
   }
   first_bay_ = first_bay;
   offset_ = first_bay * per_bay_;
-  if (!is_uniform_) factorise();
+  if (!model_.is_uniform()) factorise();
   for (Table& table : tables_)
     if (!table.is_interior) table.bay = -1;
 }
 
+void TrackWindow::subtract_end_damping(const VectorXd& rate, VectorXd& force) const {
+  if (is_whole_track()) return;
+  const int rows = (model_.data().ends.bays + 1) * per_bay_;
+  for (const int first : {0, size_ - rows})
+    force.segment(padding_ + first, rows).noalias() -=
+        end_damping_.middleRows(first, rows) * rate.segment(padding_, size_);
+}
+
 void TrackWindow::predict() {
-  before_ = qd_;
-  q_ += h_ * qd_ + 0.25 * h_ * h_ * y_;
-  qd_ += 0.5 * h_ * y_;
-  double* const y = y_.data() + padding_;
-  K_rows_.for_each_row(offset_, size_, padding_, q_.data(), [&](int i, double f) { y[i] = -f; });
-  C_rows_.for_each_row(offset_, size_, padding_, qd_.data(), [&](int i, double f) { y[i] -= f; });
-  if (!is_whole_track())
-    end_rows_.for_each_row(0, size_, padding_, qd_.data(), [&](int i, double f) { y[i] -= f; });
-  factor_.solve_in_place(y);
+  const double h = h_;
+  for (Eigen::Index i = 0; i < q_.size(); ++i) {
+    rate_before_[i] = qd_[i];
+    q_[i] += h * (qd_[i] + 0.25 * h * y_[i]);
+    qd_[i] += 0.5 * h * y_[i];
+  }
+  y_.setZero();
+  K_product_.subtract(offset_, size_, padding_, q_.data(), y_.data());
+  C_product_.subtract(offset_, size_, padding_, qd_.data(), y_.data());
+  subtract_end_damping(qd_, y_);
+  factor_.solve_in_place(y_.data() + padding_);
 }
 
 PortMotion TrackWindow::free_motion(const PortShape& shape) const {
@@ -233,6 +249,7 @@ PortMotion TrackWindow::free_motion(const PortShape& shape) const {
 
 double TrackWindow::response(const PortShape& at, const PortShape& of) {
   double sum = 0;
+  if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return 0;
   for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l)
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
       sum += at.value[k] * of.value[l] * inverse_entry(at.index[k], of.index[l]);
@@ -241,6 +258,7 @@ double TrackWindow::response(const PortShape& at, const PortShape& of) {
 
 double TrackWindow::slope_response(const PortShape& at, const PortShape& of) {
   double sum = 0;
+  if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return 0;
   for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l)
     for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
       sum += at.gradient[k] * of.value[l] * inverse_entry(at.index[k], of.index[l]);
@@ -265,13 +283,14 @@ void TrackWindow::accept(const std::vector<PortShape>& shapes, const VectorXd& F
   }
   q_ += 0.25 * h_ * h_ * y_;
   qd_ += 0.5 * h_ * y_;
-  before_ = 0.5 * (before_ + qd_);
-  double power = 0;
-  const double* const v = before_.data() + padding_;
-  C_rows_.for_each_row(offset_, size_, padding_, before_.data(), [&](int i, double f) { power += v[i] * f; });
-  if (!is_whole_track())
-    end_rows_.for_each_row(0, size_, padding_, before_.data(), [&](int i, double f) { power += v[i] * f; });
-  dissipated_ = h_ * power;
+}
+
+double TrackWindow::dissipated_in_step() const {
+  const VectorXd rate = 0.5 * (rate_before_ + qd_);
+  VectorXd force = VectorXd::Zero(rate.size());
+  C_product_.subtract(offset_, size_, padding_, rate.data(), force.data());
+  subtract_end_damping(rate, force);
+  return -h_ * rate.segment(padding_, size_).dot(force.segment(padding_, size_));
 }
 
 double TrackWindow::kinetic_energy() const {

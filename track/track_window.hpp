@@ -64,17 +64,22 @@ class TrackWindow {
   double kinetic_energy() const;    ///< [J]
   double potential_energy() const;  ///< [J]
   /// Energy turned into heat by the last step, h vm^T C vm with vm = (q_1 - q_0) / h, exact for Newmark's method [J].
-  double dissipated_in_step() const { return dissipated_; }
+  double dissipated_in_step() const;
 
  private:
-  // Rows of a symmetric matrix of the whole track, entries one after the other.
-  struct Rows {
+  // A symmetric matrix of the whole track by rows; where all bays are alike also the rows of an inner bay as a dense block,
+  // its columns that are not zero one after the other.
+  struct Product {
+    int per_bay = 0, bays = 0;
     std::vector<int> begin, column;
     std::vector<double> value;
-    explicit Rows(const SparseMatrix& A);
-    // y = (rows of the window) x, both with padding around; x counts as 0 outside.
-    template <class Use>
-    void for_each_row(int offset, int size, int padding, const double* x, Use use) const;
+    bool is_uniform = false;
+    std::vector<int> block_columns;  // counted from the bay before
+    std::vector<double> block;
+    Product(const SparseMatrix& A, const TrackModel& model, bool is_uniform);
+    /// y -= (rows offset ... offset + size - 1) x, both with `padding` entries around, which are zero in x.
+    void subtract(int offset, int size, int padding, const double* x, double* y) const;
+    void subtract_row(int row, const double* x, double& y) const;  // x by column of the whole track
   };
   // Columns of A^-1 for all unknowns of one bay, over the bays from `-reach` to `reach`.
   struct Table {
@@ -84,6 +89,7 @@ class TrackWindow {
   };
   void factorise();
   void choose_reach();
+  void subtract_end_damping(const Eigen::VectorXd& rate, Eigen::VectorXd& force) const;
   const Table& table_of(int bay);
   void fill(Table& table, int bay) const;
   double inverse_entry(int row, int column);
@@ -91,16 +97,14 @@ class TrackWindow {
   const TrackModel& model_;
   int bays_, per_bay_, size_, padding_;
   double h_;
-  bool is_uniform_;
   int first_bay_ = 0, offset_ = 0;  // offset_: first coordinate of the window
   int reach_ = 0, factorisations_ = 0;
   SparseMatrix M_, C_, K_;    // of the whole track
   SparseMatrix end_damping_;  // of the travelling ends, window size
-  Rows C_rows_, K_rows_, end_rows_;
+  Product C_product_, K_product_;
   BandedCholesky factor_;
-  std::vector<Table> tables_;            // by bay modulo their number; the last one for all like bays
-  Eigen::VectorXd q_, qd_, y_, before_;  // with padding on both sides
-  double dissipated_ = 0;
+  std::vector<Table> tables_;                 // by bay modulo their number; the last one for all like bays
+  Eigen::VectorXd q_, qd_, y_, rate_before_;  // with padding on both sides
 };
 
 }  // namespace easydyn::track

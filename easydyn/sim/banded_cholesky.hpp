@@ -10,10 +10,11 @@ namespace easydyn {
 /// more than solving one.
 using RightHandSides = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Cholesky factor A = L L^T of a symmetric positive definite banded matrix.
+/// Factors A = L D L^T of a symmetric positive definite banded matrix, L with ones on its diagonal (Cholesky's method
+/// without square roots).
 ///
-/// Factor: n b^2 operations, solve: 4 n b per right-hand side, memory n (b + 1) doubles, b = half bandwidth.
-/// Reference: G. Golub, C. Van Loan, Matrix Computations, 4th ed., 2013, sec. 4.3.5.
+/// Factor: n b^2 operations, solve: 4 n b per right-hand side, memory 2 n (b + 1) doubles, b = half bandwidth.
+/// Reference: G. Golub, C. Van Loan, Matrix Computations, 4th ed., 2013, sec. 4.3.5 and 4.3.6.
 class BandedCholesky {
  public:
   BandedCholesky() = default;
@@ -22,8 +23,8 @@ class BandedCholesky {
 
   /// X := A^-1 X.
   void solve_in_place(RightHandSides& X) const;
-  /// x := A^-1 x for n numbers. Each unknown takes part in the next ones as soon as it is known, so that the way through
-  /// the matrix is as short as the additions allow.
+  /// x := A^-1 x for n numbers. The last b unknowns stay in registers; an unknown waits for the one before it by one
+  /// multiplication and addition only.
   void solve_in_place(double* x) const;
   /// Rows first <= i <= last of column j of A^-1, into x[0] ... x[last - first]. Exact but for what the forward
   /// substitution leaves beyond `last`: for a column that has decayed there.
@@ -32,14 +33,18 @@ class BandedCholesky {
   int half_bandwidth() const { return b_; }
 
  private:
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   template <int columns>
   void solve_columns(double* X, int stride) const;
+  template <int b>
+  void solve_with_bandwidth(double* x) const;
+  void forward_row(int i, double* x) const;
+  void backward_row(int i, double* x) const;
 
   int n_ = 0, b_ = 0;
-  // Row i holds L(i, i-b) ... L(i, i-1), then 1 / L(i, i).
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> L_;
-  // Row i holds L(i+1, i) ... L(i+b, i): the columns, one after the other.
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> columns_;
+  Rows rows_;     // row i holds L(i, i-b) ... L(i, i-1)
+  Rows columns_;  // row i holds L(i+1, i) ... L(i+b, i)
+  Eigen::VectorXd inverse_D_;
 };
 
 }  // namespace easydyn

@@ -269,6 +269,30 @@ TEST(BandedCholesky, SolvesSeveralRightHandSidesAtOnce) {
   }
 }
 
+TEST(BandedCholesky, SolvesForEveryBandwidthAndGivesPartsOfTheInverse) {
+  constexpr int size = 53;
+  for (int b = 1; b <= 17; ++b) {
+    MatrixXd A = MatrixXd::Zero(size, size);
+    for (int i = 0; i < size; ++i)
+      for (int k = 0; k <= b && i + k < size; ++k)
+        A(i, i + k) = A(i + k, i) = k == 0 ? 4 : std::cos(3.0 * i + k) / k;
+    A.diagonal().array() += 2 * std::log(1.0 + b);  // dominant
+    const BandedCholesky factor(SparseMatrix(A.sparseView()), b, "band");
+    const Eigen::VectorXd rhs = Eigen::VectorXd::Random(size);
+    Eigen::VectorXd x = rhs;
+    factor.solve_in_place(x.data());
+    EXPECT_LT((A * x - rhs).norm(), 1e-13 * rhs.norm()) << "b = " << b;
+    const MatrixXd inverse = A.inverse();
+    for (int j : {0, 7, 30, 52}) {
+      std::vector<double> part(static_cast<std::size_t>(size));
+      const int first = std::max(0, j - 9);
+      factor.solve_unit_in_part(j, first, size - 1, part.data());  // nothing is left out beyond the last row
+      for (int i = first; i < size; ++i)
+        EXPECT_NEAR(part[static_cast<std::size_t>(i - first)], inverse(i, j), 1e-13) << "b = " << b;
+    }
+  }
+}
+
 TEST(BandedCholesky, NamesTheStructureThatIsFreeToMove) {
   SparseMatrix K(2, 2);
   K.insert(0, 0) = 5;

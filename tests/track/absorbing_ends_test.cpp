@@ -39,6 +39,27 @@ TEST(AbsorbingEnds, SendNothingBackBelow200Hz) {
   EXPECT_LT(reflected(thalys_like_track(), frequencies, from_load), 1e-5);
 }
 
+TEST(AbsorbingEnds, SendLittleBackOnOtherRailsAndSupports) {
+  const std::vector<double> frequencies = {1, 20, 60, 100, 160, 200}, from_load = {-4.5, 6};
+  TrackData timoshenko = thalys_like_track(), pads = timoshenko;
+  timoshenko.theory = RailTheory::timoshenko;
+  pads.under_sleeper_pads = UnderSleeperPads{1.5e8, 4e4};
+  EXPECT_LT(reflected(timoshenko, frequencies, from_load), 1e-5);
+  EXPECT_LT(reflected(pads, frequencies, from_load), 1e-5);
+  EXPECT_LT(reflected(zhai_2004_track(), frequencies, from_load), 2e-4);     // measured 8e-5
+  EXPECT_LT(reflected(lincent_like_track(), frequencies, from_load), 4e-4);  // measured 2e-4: little damping
+}
+
+// the waves of a slab are long: the default sends back 1 %
+TEST(AbsorbingEnds, OfASlabAreTwiceAsLongAndSofter) {
+  const std::vector<double> frequencies = {1, 20, 60, 100, 160, 200}, from_load = {-4.5, 6};
+  TrackData data = thalys_like_track();
+  data.slab = Slab{3e8, 3000};
+  data.ends.bays = 40;
+  data.ends.alpha = 1500;
+  EXPECT_LT(reflected(data, frequencies, from_load), 5e-4);  // measured 3.2e-4
+}
+
 // near the pinned-pinned frequency (877 Hz with sleepers every 0.72 m) the waves hardly travel, and any
 // change of the track throws some back
 TEST(AbsorbingEnds, SendLittleBackBelowThePinnedPinnedFrequency) {

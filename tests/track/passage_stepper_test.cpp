@@ -8,6 +8,8 @@
 #include <cmath>
 
 #include "easydyn/easydyn.hpp"
+#include "track/hanging_sleepers.hpp"
+#include "track/moving_load.hpp"
 #include "track/passage.hpp"
 #include "track/wheel_rail_contact.hpp"
 
@@ -190,6 +192,71 @@ TEST(PassageStepper, DoesNotDependOnWhereItStarts) {
   const Eigen::Index first = 8000, rows = late.rows() - shift - first;
   EXPECT_LT(largest_relative_difference(early.middleRows(shift + first, rows), late.middleRows(first, rows)),
             1e-6);
+}
+
+TEST(PassageStepper, IsNewmarksMethodOfTheKernelWhereSleepersHangAndSupportsVary) {
+  TrackData data = thalys_like_track();
+  data.ends.bays = 10;
+  data.variation = [](int sleeper, double x) {
+    SupportVariation here;
+    here.foundation = x < 0 ? 1 : 3;
+    here.ballast = 1 + 0.2 * std::cos(sleeper);
+    if (sleeper == 50 || sleeper == 51) here.gap = 0.3e-3;
+    return here;
+  };
+  class HangingTrain : public Train {
+   public:
+    using Train::Train;
+    void forces() override {
+      Train::forces();
+      apply_hanging_sleepers(track, energy());
+    }
+  };
+  const TrackModel model(data, 180, -30);
+  const auto flat = std::make_shared<FlatProfile>();
+  PassageOptions options{
+      .duration = 0.15, .step = 1e-4, .output_step = 1e-3, .first_sleeper_x = -5, .last_sleeper_x = 5};
+  const auto run = [&](double window, bool use_kernel) {
+    HangingTrain train(model, {-4, 3}, -3, 60, flat);
+    options.window = window;
+    options.use_kernel = use_kernel;
+    return compute_passage(train, train.track, train.contact_list(), options);
+  };
+  const Passage kernel = run(0, true), whole = run(0, false), part = run(50, false);
+  const Eigen::Index hanging = 8;  // sleeper 50 is the ninth recorded, at x = 0
+  ASSERT_NEAR(kernel.sleeper_x[hanging], 0, 1e-9);
+  EXPECT_EQ(kernel.ballast_reaction.col(hanging).minCoeff(), 0);    // never pulled
+  EXPECT_GT(kernel.ballast_reaction.col(hanging).maxCoeff(), 1e3);  // but the gap closes
+  EXPECT_LT(largest_relative_difference(whole.ballast_reaction, kernel.ballast_reaction), 1e-8);
+  EXPECT_LT(largest_relative_difference(whole.contact_force, kernel.contact_force), 1e-8);
+  EXPECT_GT(part.statistics.moves, 10);  // each with a factorisation of its own
+  EXPECT_LT(largest_relative_difference(part.ballast_reaction, kernel.ballast_reaction),
+            1e-4);  // 16 m before the ends
+}
+
+TEST(PassageStepper, CarriesMovingLoads) {
+  class Loads : public System {
+   public:
+    Loads(const TrackModel& model) : track(*this, model) {}
+    FlexibleTrack track;
+    MovingLoad front{"front", 80e3}, rear{"rear", 90e3};
+    void positions() override {}
+    void forces() override {
+      const double x = -6 + 50 * time().value();
+      front.apply(x + 3, 50, track, energy());
+      rear.apply(x, 50, track, energy());
+    }
+  };
+  const TrackModel model(thalys_like_track(), 120, -36);
+  PassageOptions options{
+      .duration = 0.12, .step = 2e-4, .output_step = 1e-3, .first_sleeper_x = -9, .last_sleeper_x = 9};
+  Loads one(model), other(model);
+  const Passage fast = compute_passage(one, one.track, {&one.front, &one.rear}, options);
+  options.use_kernel = true;
+  const Passage kernel = compute_passage(other, other.track, {&other.front, &other.rear}, options);
+  EXPECT_LT(largest_relative_difference(fast.ballast_reaction, kernel.ballast_reaction), 1e-10);
+  EXPECT_NEAR(fast.static_ballast_reaction / 170e3, 1, 1e-10);
+  EXPECT_LT(largest_relative_difference(fast.supplied_energy, kernel.supplied_energy), 1e-8);
 }
 
 TEST(PassageStepper, SaysWhatItCannotDo) {

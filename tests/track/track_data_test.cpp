@@ -27,7 +27,8 @@ auto validating_tram_with(Change change) {
 }
 
 TEST(BundledTracks, AreValidAndStateASourceForEveryValue) {
-  for (const TrackData& data : {t2000_like_track(), thalys_like_track()}) {
+  for (const TrackData& data : {t2000_like_track(), thalys_like_track(), zhai_2004_track(),
+                                railfe_default_track(), lincent_like_track()}) {
     EXPECT_NO_THROW(validate(data));
     for (const easydyn::Parameter& p : parameters(data)) {
       EXPECT_FALSE(p.unit.empty()) << p.name;
@@ -93,6 +94,31 @@ TEST(BundledTracks, HoldTheHighSpeedTrackOfAth) {
   // fit of the infinite chain on the layered ground of Ath, 2-50 Hz (C)
   expect_foundation(track, {346, 27.2e6, 281e3, 12.9e6, -53e3});
   expect_default_discretisation(track);
+}
+
+// Table of track sets: per rail (Zhai, railFE) or whole (Lincent).
+TEST(BundledTracks, HoldTheSetsOfTheTable) {
+  const TrackData zhai = zhai_2004_track();
+  EXPECT_DOUBLE_EQ(zhai.pad_stiffness, 130e6);
+  EXPECT_DOUBLE_EQ(zhai.pad_damping, 150e3);
+  EXPECT_DOUBLE_EQ(zhai.sleeper_mass, 251);
+  EXPECT_DOUBLE_EQ(zhai.ballast_stiffness, 275.5e6);
+  EXPECT_DOUBLE_EQ(zhai.ballast_damping, 117.6e3);
+  ASSERT_TRUE(zhai.ballast_mass);
+  EXPECT_DOUBLE_EQ(zhai.ballast_mass->mass, 1062.8);
+  const TrackData railfe = railfe_default_track();
+  EXPECT_DOUBLE_EQ(railfe.pad_stiffness, 400e6);
+  EXPECT_DOUBLE_EQ(railfe.pad_damping, 56e3);
+  EXPECT_DOUBLE_EQ(railfe.sleeper_mass, 280);
+  EXPECT_DOUBLE_EQ(railfe.ballast_stiffness, 80e6);
+  EXPECT_DOUBLE_EQ(railfe.ballast_damping, 94e3);
+  const TrackData lincent = lincent_like_track();
+  EXPECT_DOUBLE_EQ(lincent.pad_stiffness, 153.4e6);
+  EXPECT_DOUBLE_EQ(lincent.pad_damping, 13.5e3);
+  EXPECT_DOUBLE_EQ(lincent.sleeper_mass, 300);
+  EXPECT_DOUBLE_EQ(lincent.ballast_stiffness, 920e6);
+  EXPECT_DOUBLE_EQ(lincent.ballast_damping, 16.5e3);
+  for (const TrackData& data : {zhai, railfe, lincent}) EXPECT_DOUBLE_EQ(data.sleeper_spacing, 0.6);
 }
 
 TEST(RailSections, HoldTheTabulatedValues) {
