@@ -32,6 +32,7 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
       track_(track),
       options_(options),
       window_(track.model(), bays_of(track.model(), options.window), options.step),
+      start_(start.t),
       t_(start.t) {
   const char* const passage = "passage";
   require_positive(passage, "tolerance", options.tolerance, "");
@@ -235,7 +236,7 @@ void PassageStepper::step() {
     }
   }
   window_.predict();
-  t_ += h;
+  t_ = start_ + static_cast<double>(statistics_.steps + 1) * h;
   q_star_ = q_ + h * qd_ + 0.25 * h * h * qdd_;
   qd_star_ = qd_ + 0.5 * h * qdd_;
   knows_responses_ = false;

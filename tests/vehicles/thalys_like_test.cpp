@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "vehicles/axle_loads.hpp"
+#include "vehicles/vehicle_modes.hpp"
 #include "vehicles/vehicle_tables.hpp"
 
 namespace {
