@@ -30,9 +30,10 @@ int main(int argc, char** argv) {
   hst.speed = 300;  // km/h
   hst.top_speed = 400;
   hst.irregularity = "sncf_good";
-  hst.time_step = 2e-4;  // s
-  hst.loaded = 50;       // m: the ground is loaded from -50 m to 50 m about the receivers
-  hst.approach = 10;     // m
+  hst.time_step = 2e-4;             // s
+  hst.loaded = 50;                  // m: the ground is loaded from -50 m to 50 m about the receivers
+  hst.approach = 10;                // m
+  hst.rayleigh_speed = 0.932 * 80;  // m/s: cs 80 m/s, nu 0.33 (examples/sites/hst.toml)
   hst.heights = {.floor = 1.1, .width = 2.8};
   hst.picture_width = 60;
   hst.followed = "car 2 body";

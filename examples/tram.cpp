@@ -29,9 +29,10 @@ int main(int argc, char** argv) {
   tram.title = "A tram over a rail joint: contact forces, track motion and the load on the ground.";
   tram.vehicle = vehicles::t2000_like();
   tram.track = track::t2000_like_track();
-  tram.speed = 30;       // km/h
-  tram.step_height = 1;  // mm
-  tram.loaded = 14;      // m: the ground is loaded from -14 m to 14 m about the joint
+  tram.speed = 30;                    // km/h
+  tram.step_height = 1;               // mm
+  tram.loaded = 14;                   // m: the ground is loaded from -14 m to 14 m about the joint
+  tram.rayleigh_speed = 0.935 * 109;  // m/s: cs 109 m/s, nu 0.35 (examples/sites/tram.toml)
   tram.followed = "centre body";
   return examples::run_passage_program(tram, argc, argv);
 }

@@ -222,13 +222,26 @@ std::string describe(const PassageProgram& program, const Options& options, cons
                      run.data.label(), track::kind_of(run.data.foundation));
 }
 
+/// Speeds near those at which waves in the track or in the ground keep up with the train.
+std::vector<std::string> warn_of_speed(const PassageProgram& program, const Run& run) {
+  std::vector<std::string> warnings;
+  if (const auto warning = track::warn_of_critical_speed(run.data, run.speed)) warnings.push_back(*warning);
+  if (program.rayleigh_speed > 0 && run.speed > 0.7 * program.rayleigh_speed)
+    warnings.push_back(
+        fmt::format("speed {:.1f} m/s is more than 0.7 of the Rayleigh speed {:.1f} m/s of the upper layer "
+                    "of the ground: its waves keep "
+                    "up with the train, which the foundation of the track does not know",
+                    run.speed, program.rayleigh_speed));
+  return warnings;
+}
+
 int run_one(const PassageProgram& program, const Options& options, const std::string& command) {
   Run run(program, options, options.speeds.front() * km / h);
   const std::string description = describe(program, options, run);
   fmt::print("{}: {}\n", program.name, description);
   fs::create_directories(options.output);  // before the work, in case it cannot be
   std::vector<std::string> warnings = vehicles::unusual_values(program.vehicle);
-  if (const auto warning = track::warn_of_critical_speed(run.data, run.speed)) warnings.push_back(*warning);
+  for (const std::string& warning : warn_of_speed(program, run)) warnings.push_back(warning);
   for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", program.name, warning);
   fmt::print(
       "{}: {} bays of track, {:.0f} m of them at a time, {} coordinates of bodies, {:.2f} s in steps of {} "
@@ -281,7 +294,8 @@ int run_sweep(const PassageProgram& program, const Options& options) {
   fs::create_directories(options.output);
   const std::size_t n = options.speeds.size();
   std::vector<std::vector<track::SummaryFigure>> summaries(n);
-  std::vector<std::string> failures(n), warnings(n);
+  std::vector<std::string> failures(n);
+  std::vector<std::vector<std::string>> warnings(n);
   std::atomic<std::size_t> next = 0;
   std::mutex printing;
   const auto work = [&] {
@@ -290,7 +304,7 @@ int run_sweep(const PassageProgram& program, const Options& options) {
         Run run(program, options, options.speeds[i] * km / h);
         run.compute();
         summaries[i] = summarise(run);
-        warnings[i] = track::warn_of_critical_speed(run.data, run.speed).value_or("");
+        warnings[i] = warn_of_speed(program, run);
       } catch (const std::exception& e) {
         failures[i] = e.what();
       }
@@ -334,7 +348,8 @@ int run_sweep(const PassageProgram& program, const Options& options) {
   report.add_paragraph(fmt::format("{} on {}, foundation {}. The ground is computed for one speed at a time.",
                                    program.vehicle.label(), program.track.label(), options.foundation));
   for (std::size_t i = 0; i < n; ++i)
-    if (!warnings[i].empty()) report.add_note(fmt::format("{:g} km/h: {}", options.speeds[i], warnings[i]));
+    for (const std::string& warning : warnings[i])
+      report.add_note(fmt::format("{:g} km/h: {}", options.speeds[i], warning));
   report.add_section("Results").add_table(table).add_charts(charts);
   report.write(options.output / "sweep.html");
 
@@ -344,7 +359,8 @@ int run_sweep(const PassageProgram& program, const Options& options) {
     for (std::size_t c = 0; c < row.size(); ++c)
       fmt::print("{:>8}{}", row[c], c + 1 == row.size() ? "\n" : " ");
   for (std::size_t i = 0; i < n; ++i)
-    if (!warnings[i].empty()) fmt::print("{}: warning: {}\n", program.name, warnings[i]);
+    for (const std::string& warning : warnings[i])
+      fmt::print("{}: warning: {:g} km/h: {}\n", program.name, options.speeds[i], warning);
   fmt::print("{}: wrote {}\n", program.name, (options.output / "sweep.html").string());
   return 0;
 }

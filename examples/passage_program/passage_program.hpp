@@ -31,6 +31,9 @@ struct PassageProgram {
   double approach = 2;  ///< of the first wheel to the loaded part, and of the last one away from it [m]
   double margin = 32;   ///< of track solved before and behind the wheels, the absorbing ends included [m]
 
+  /// Rayleigh speed of the upper layer of the site that the foundation stands for [m/s]; 0: unknown.
+  double rayleigh_speed = 0;
+
   vehicles::DrawingHeights heights = {};
   double picture_width = 26;  ///< of the animation [m]
   std::string followed;       ///< body that the camera follows
