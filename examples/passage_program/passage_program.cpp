@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <charconv>
 #include <cmath>
@@ -334,9 +335,14 @@ int run_sweep(const PassageProgram& program, const Options& options) {
     Eigen::VectorXd values(speeds.size());
     for (std::size_t i = 0; i < n; ++i) values[static_cast<Eigen::Index>(i)] = summaries[i][k].value;
     const track::SummaryFigure& f = summaries[0][k];
+    if (values.isZero(0)) continue;  // no contact is lost
+    const std::string quantity = f.unit == "kN"   ? "force"
+                                 : f.unit == "mm" ? "deflection"
+                                 : f.unit == "ms" ? "time"
+                                                  : "number";
     charts.push_back({.title = f.name,
                       .x = {"speed", "km/h"},
-                      .y = {f.name, f.unit.empty() ? "1" : f.unit},
+                      .y = {quantity, f.unit.empty() ? "1" : f.unit},
                       .series = {{f.name, speeds, values, visu::Stroke::line_and_points}}});
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -430,6 +436,7 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   }
   try {
     if (options.output.empty()) throw InputError("--output is empty, must name a folder");
+    std::ranges::sort(options.speeds);
     if (options.speeds.size() > 1) return run_sweep(program, options);
     return run_one(program, options, results::join_command_line(argc, argv));
   } catch (const std::exception& e) {
