@@ -12,14 +12,14 @@
 namespace easydyn::track {
 
 struct PassageOptions {
-  double duration = 1;         ///< [s], > 0
-  double step = 1e-4;          ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
-  double window = 0;           ///< length of track that travels with the train [m]; 0: all of it at once
-  bool use_kernel = false;     ///< the general-purpose `Newmark` of the kernel, as a check; slow, no window
-  double run_in = 0;               ///< time before t = 0 in which the train runs and nothing is recorded [s], >= 0
-  double output_step = 5e-4;   ///< [s], a multiple of the step
-  double first_sleeper_x = 0;  ///< sleepers from here ...
-  double last_sleeper_x = 0;   ///< ... to here [m] are recorded; at least one must stand there
+  double duration = 1;        ///< [s], > 0
+  double step = 1e-4;         ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
+  double window = 0;          ///< length of track that travels with the train [m]; 0: all of it at once
+  bool use_kernel = false;    ///< the general-purpose `Newmark` of the kernel, as a check; slow, no window
+  double run_in = 0;          ///< time before t = 0 in which the train runs and nothing is recorded [s], >= 0
+  double output_step = 5e-4;  ///< [s], a multiple of the step
+  double first_sleeper_x = 0;      ///< sleepers from here ...
+  double last_sleeper_x = 0;       ///< ... to here [m] are recorded; at least one must stand there
   double start_difference = 2e-3;  ///< of the quasi-static start [s]
 };
 

@@ -42,9 +42,10 @@ FlexibleBody::FlexibleBody(System& system, std::string name, const FlexibleModel
   if (m > 0) {
     const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> eigen(K_, M_);
     if (eigen.info() != Eigen::Success || !(eigen.eigenvalues()[0] > 1e-12 * eigen.eigenvalues()[m - 1]))
-      throw ModelError(fmt::format("{}: its shapes contain rigid motion, which the floating frame makes already; clamp "
-                                   "a node, or six displacements",
-                                   object));
+      throw ModelError(
+          fmt::format("{}: its shapes contain rigid motion, which the floating frame makes already; clamp "
+                      "a node, or six displacements",
+                      object));
     // 2 zeta w for each mode of the shapes
     const MatrixXd momentum = M_ * eigen.eigenvectors();
     D_ = momentum * (2 * damping_ratio * eigen.eigenvalues().cwiseMax(0).cwiseSqrt()).asDiagonal() *
