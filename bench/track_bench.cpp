@@ -54,10 +54,11 @@ BandedCholesky factorise(const Passage& passage) {
   return {model.M() + 0.5 * h * model.C() + 0.25 * h * h * model.K(), model.half_bandwidth(), "track"};
 }
 
-template <class Work>
-double median_time(int times, Work work) {
+template <class Prepare, class Work>
+double median_time(int times, Prepare prepare, Work work) {
   std::vector<double> durations;
   for (int i = 0; i < times; ++i) {
+    prepare();
     const auto begin = std::chrono::steady_clock::now();
     work();
     durations.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
@@ -75,11 +76,13 @@ void passage_step(benchmark::State& state, Passage (*make)()) {
   state.counters["window_MB"] = 1e-6 * static_cast<double>(stepper.window().memory());
   const BandedCholesky factor = factorise(passage);
   Eigen::VectorXd x(factor.size());
-  const double step = median_time(300, [&] { stepper.step(); }), solve = median_time(300, [&] {
-                                                                   x.setOnes();
-                                                                   factor.solve_in_place(x.data());
-                                                                   benchmark::DoNotOptimize(x.data());
-                                                                 });
+  const double step = median_time(300, [] {}, [&] { stepper.step(); }),
+               solve = median_time(
+                   300, [&] { x.setOnes(); },
+                   [&] {
+                     factor.solve_in_place(x.data());
+                     benchmark::DoNotOptimize(x.data());
+                   });
   state.counters["per_banded_solve"] = step / solve;
 }
 BENCHMARK_CAPTURE(passage_step, hst, [] { return hst(); })

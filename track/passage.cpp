@@ -146,7 +146,10 @@ class PassageRecorder {
 // The ballast is linear and holds less pull than the weight above it.
 void warn_of_uplift(Passage& p, const TrackData& data) {
   constexpr double g = 9.81;
-  p.track_weight = g * (data.sleeper_mass + data.rails * data.rail.mass_per_length * data.sleeper_spacing);
+  // What lies above the springs whose force is the reaction.
+  p.track_weight = g * (data.sleeper_mass + data.rails * data.rail.mass_per_length * data.sleeper_spacing +
+                        (data.slab ? data.slab->mass_per_length * data.sleeper_spacing : 0.0) +
+                        (data.ballast_mass ? double(data.ballast_mass->mass) : 0.0));
   Index row = 0, sleeper = 0;
   const double least = p.ballast_reaction.minCoeff(&row, &sleeper);
   if (least >= -p.track_weight) return;

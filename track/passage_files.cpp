@@ -55,7 +55,7 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
     file.write_matrix("/foundation/displacement", p.foundation_displacement,
                       {"m", "foundation u_f below each sleeper", down});
   file.write_matrix("/ballast/reaction", p.ballast_reaction,
-                    {"N", "force of the ballast on the soil, k_b (u_s - u_f) + d_b (u_s' - u_f')", down});
+                    {"N", "force of the ballast on the soil", down});
 
   file.write_names("/vehicle/names", p.coordinate_names, "coordinates of the vehicle");
   file.write_matrix("/vehicle/position", p.coordinates,

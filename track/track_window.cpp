@@ -155,7 +155,7 @@ const TrackWindow::Table& TrackWindow::table_of(int bay) {
   const int stored = model_.is_uniform() && is_interior ? -2 : bay;
   const auto slot = stored == -2 ? tables_.size() - 1 : static_cast<std::size_t>(bay % bays_);
   Table& table = tables_[slot];
-  if (table.bay == stored) return table;
+  if (table.bay == stored && table.is_interior == is_interior) return table;
   fill(table, bay);
   table.bay = stored;
   table.is_interior = is_interior;
@@ -166,8 +166,12 @@ std::size_t TrackWindow::memory() const {
   std::size_t doubles = 4 * static_cast<std::size_t>(q_.size()) +
                         2 * static_cast<std::size_t>(size_) * static_cast<std::size_t>(padding_ + 1);
   for (const Table& table : tables_) doubles += table.columns.size();
-  for (const Product* product : {&C_product_, &K_product_}) doubles += 2 * product->value.size();
-  return 8 * doubles;
+  std::size_t bytes = 8 * doubles;
+  for (const Product* product : {&C_product_, &K_product_})
+    bytes += 12 * product->value.size() + 4 * product->begin.size() + 8 * product->block.size();
+  for (const SparseMatrix* matrix : {&M_, &C_, &K_, &end_damping_})
+    bytes += 12 * static_cast<std::size_t>(matrix->nonZeros()) + 4 * static_cast<std::size_t>(matrix->rows());
+  return bytes;
 }
 
 void TrackWindow::set_state(int first_bay, const Eigen::Ref<const VectorXd>& q,
@@ -245,6 +249,7 @@ TrackWindow::Response TrackWindow::response(const PortShape& at, const PortShape
   if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return sum;
   const int rows = (2 * reach_ + 1) * per_bay_;
   for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l) {
+    if (!holds(of.index[l])) continue;  // outside everything is at rest
     const int bay = of.index[l] / per_bay_, start = (bay - reach_) * per_bay_;
     const double* const column =
         table_of(bay).columns.data() + static_cast<std::ptrdiff_t>(of.index[l] - bay * per_bay_) * rows;
