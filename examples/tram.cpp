@@ -35,7 +35,10 @@
 #include "track/wheel_rail_contact.hpp"
 #include "vehicles/planar_vehicle.hpp"
 #include "vehicles/t2000_like.hpp"
+#include "vehicles/vehicle_drawing.hpp"
+#include "vehicles/vehicle_modes.hpp"
 #include "vehicles/vehicle_scene.hpp"
+#include "vehicles/vehicle_tables.hpp"
 
 using namespace easydyn;
 using namespace easydyn::units;
@@ -121,9 +124,13 @@ int run(const Options& options, const std::string& command) {
 
   // The sleepers are centred between the bays about the joint, so that x = 0 is mid-span.
   const vehicles::RailVehicle vehicle = vehicles::t2000_like();
-  double reach = 0;  // farthest wheel from the origin of the tram
+  double reach = 0;           // farthest wheel from the origin of the tram
+  double largest_radius = 0;  // of the wheel that smooths the profile most
   for (const auto& gear : vehicle.gears)
-    for (const auto& pair : gear.wheel_pairs) reach = std::max(reach, std::abs(pair.x));
+    for (const auto& pair : gear.wheel_pairs) {
+      reach = std::max(reach, std::abs(pair.x));
+      largest_radius = std::max(largest_radius, pair.radius.value);
+    }
   const double spacing = data.sleeper_spacing;
   const double x0 = -(loaded + approach + reach);
   const int half_bays = static_cast<int>(std::ceil((-x0 + reach + margin) / spacing)) + data.ends.bays;
@@ -198,8 +205,17 @@ int run(const Options& options, const std::string& command) {
       .command = command,
       .convention =
           "x along the track, y left, z up; track displacements and ground loads positive downward"};
-  track::write_passage(options.output / "results.h5", passage, description, parameters, summary,
-                       visu::to_json(make_scene(passage, system, x0, v)), provenance);
+  track::write_passage(options.output / "results.h5", passage,
+                       {.description = description,
+                        .parameters = parameters,
+                        .summary = summary,
+                        .scene = make_scene(passage, system, x0, v),
+                        .drawing = vehicles::draw_vehicle(vehicle),
+                        .tables = {vehicles::axle_load_table(vehicle, vehicles::compute_axle_loads(vehicle)),
+                                   vehicles::mass_balance_table(vehicle),
+                                   vehicles::mode_table(vehicles::compute_vehicle_modes(vehicle))},
+                        .profile = track::sample_profile(*profile, largest_radius, -1, 1, 1e-3)},
+                       provenance);
   track::write_passage_channels(options.output / "channels.csv", passage, 0);
 
   soil::SurfaceLoads loads;
