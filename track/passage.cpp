@@ -158,9 +158,10 @@ void warn_of_uplift(Passage& p, const TrackData& data) {
 }
 
 template <class Run>
-void run_with_kernel(System& system, const FlexibleTrack& track, const State& start,
+void run_with_kernel(System& system, const FlexibleTrack& track, const State& start, long run_in,
                      const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
   Newmark integrator(system, start, {.step = options.step});
+  for (long i = 0; i < run_in; ++i) integrator.step();
   EnergyBalance energy;
   const auto watch = [&] {
     energy = system.compute_energy(integrator.state());
@@ -187,10 +188,11 @@ void run_with_kernel(System& system, const FlexibleTrack& track, const State& st
 
 template <class Run>
 void run_with_window(System& system, const FlexibleTrack& track,
-                     const std::vector<const TrackContact*>& contacts, const State& start,
+                     const std::vector<const TrackContact*>& contacts, const State& start, long run_in,
                      const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
   PassageStepper stepper(system, track, {contacts.begin(), contacts.end()}, start,
                          {.step = options.step, .window = options.window});
+  for (long i = 0; i < run_in; ++i) stepper.step();
   recorder.watch(stepper.t(), system.body_energy(), 0);
   const TrackWindow& window = stepper.window();
   run(
@@ -221,10 +223,14 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
   require(every >= 1 && std::abs(ratio - static_cast<double>(every)) < 1e-6 * ratio, "passage", "output step",
           options.output_step, "s", fmt::format("a multiple of the time step {} s", options.step));
 
-  const State start = solve_quasi_static_motion(system, system.initial_state(), options.start_difference);
+  require_not_negative("passage", "run-in", options.run_in, "s");
+  const long run_in = std::lround(std::ceil(options.run_in / options.step - 1e-9));
+  State guess = system.initial_state();
+  guess.t = -static_cast<double>(run_in) * options.step;
+  const State start = solve_quasi_static_motion(system, guess, options.start_difference);
   const auto outputs = static_cast<Index>(std::ceil(options.duration / options.output_step - 1e-9));
   PassageRecorder recorder(system, track, contacts, options, outputs + 1);
-  const State at_rest = solve_static_equilibrium(system, system.initial_state());
+  const State at_rest = solve_static_equilibrium(system, guess);
   recorder.passage().static_ballast_reaction =
       track.model().ballast_reactions(track.coordinates(at_rest.q), track.coordinates(at_rest.qd)).sum();
 
@@ -238,9 +244,9 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
   };
   Passage& passage = recorder.passage();
   if (options.use_kernel)
-    run_with_kernel(system, track, start, options, recorder, passage, run);
+    run_with_kernel(system, track, start, run_in, options, recorder, passage, run);
   else
-    run_with_window(system, track, contacts, start, options, recorder, passage, run);
+    run_with_window(system, track, contacts, start, run_in, options, recorder, passage, run);
   warn_of_uplift(passage, track.model().data());
   return std::move(passage);
 }

@@ -16,6 +16,7 @@ struct PassageOptions {
   double step = 1e-4;          ///< of Newmark's method [s], > 0: 300 Hz keeps its period within 0.3 %
   double window = 0;           ///< length of track that travels with the train [m]; 0: all of it at once
   bool use_kernel = false;     ///< the general-purpose `Newmark` of the kernel, as a check; slow, no window
+  double run_in = 0;               ///< time before t = 0 in which the train runs and nothing is recorded [s], >= 0
   double output_step = 5e-4;   ///< [s], a multiple of the step
   double first_sleeper_x = 0;  ///< sleepers from here ...
   double last_sleeper_x = 0;   ///< ... to here [m] are recorded; at least one must stand there
@@ -53,7 +54,7 @@ struct Passage {
   std::size_t memory = 0;  ///< of the results and of what solves the track [bytes]
 };
 
-/// Runs a system that moves over a flexible track, from the smooth quasi-static start at t = 0
+/// Runs a system that moves over a flexible track, from the smooth quasi-static start at t = -run_in
 /// (`solve_quasi_static_motion`) with Newmark's method (`PassageStepper`).
 ///
 /// With a window the cost of a step does not depend on the length of the track. What the window leaves behind is at rest,

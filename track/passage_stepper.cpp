@@ -32,6 +32,7 @@ PassageStepper::PassageStepper(System& system, const FlexibleTrack& track,
       track_(track),
       options_(options),
       window_(track.model(), bays_of(track.model(), options.window), options.step),
+      start_(start.t),
       t_(start.t) {
   const char* const passage = "passage";
   require_positive(passage, "tolerance", options.tolerance, "");
@@ -163,9 +164,9 @@ void PassageStepper::update_responses() {
   for (Eigen::Index i = 0; i < F_.size(); ++i)
     for (Eigen::Index j = 0; j < F_.size(); ++j) {
       const PortShape &at = shapes_[static_cast<std::size_t>(i)], &of = shapes_[static_cast<std::size_t>(j)];
-      slope_response_(i, j) = window_.slope_response(at, of);
-      if (j > i) continue;
-      track_response_(i, j) = track_response_(j, i) = window_.response(at, of);
+      const TrackWindow::Response r = window_.response(at, of);
+      track_response_(i, j) = r.acceleration;
+      slope_response_(i, j) = r.slope;
     }
   const double h = options_.step;
   response_ = 0.25 * h * h * (track_response_ + body_response_);
@@ -235,7 +236,7 @@ void PassageStepper::step() {
     }
   }
   window_.predict();
-  t_ += h;
+  t_ = start_ + static_cast<double>(statistics_.steps + 1) * h;
   q_star_ = q_ + h * qd_ + 0.25 * h * h * qdd_;
   qd_star_ = qd_ + 0.5 * h * qdd_;
   knows_responses_ = false;

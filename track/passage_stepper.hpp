@@ -83,7 +83,7 @@ class PassageStepper {
   TrackWindow window_;
   System::PortMotionFunction motion_;
   Statistics statistics_;
-  double t_;
+  double start_, t_;
   Eigen::VectorXd q_, qd_, qdd_;  // of the bodies
   Eigen::VectorXd q_star_, qd_star_;
   Eigen::VectorXd F_, F_evaluated_;  // on the ports: wanted, and as the system applied them

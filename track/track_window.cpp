@@ -162,13 +162,6 @@ const TrackWindow::Table& TrackWindow::table_of(int bay) {
   return table;
 }
 
-double TrackWindow::inverse_entry(int row, int column) {
-  const int bay = column / per_bay_, rows = (2 * reach_ + 1) * per_bay_;
-  const int r = row - (bay - reach_) * per_bay_;
-  if (r < 0 || r >= rows) return 0;
-  return table_of(bay).columns[static_cast<std::size_t>((column - bay * per_bay_) * rows + r)];
-}
-
 std::size_t TrackWindow::memory() const {
   std::size_t doubles = 4 * static_cast<std::size_t>(q_.size()) +
                         2 * static_cast<std::size_t>(size_) * static_cast<std::size_t>(padding_ + 1);
@@ -247,21 +240,21 @@ PortMotion TrackWindow::free_motion(const PortShape& shape) const {
   return motion;
 }
 
-double TrackWindow::response(const PortShape& at, const PortShape& of) {
-  double sum = 0;
-  if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return 0;
-  for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l)
-    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-      sum += at.value[k] * of.value[l] * inverse_entry(at.index[k], of.index[l]);
-  return sum;
-}
-
-double TrackWindow::slope_response(const PortShape& at, const PortShape& of) {
-  double sum = 0;
-  if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return 0;
-  for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l)
-    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k)
-      sum += at.gradient[k] * of.value[l] * inverse_entry(at.index[k], of.index[l]);
+TrackWindow::Response TrackWindow::response(const PortShape& at, const PortShape& of) {
+  Response sum;
+  if (std::abs(at.index[0] - of.index[0]) > (reach_ + 2) * per_bay_) return sum;
+  const int rows = (2 * reach_ + 1) * per_bay_;
+  for (std::size_t l = 0; l < static_cast<std::size_t>(of.count); ++l) {
+    const int bay = of.index[l] / per_bay_, start = (bay - reach_) * per_bay_;
+    const double* const column =
+        table_of(bay).columns.data() + static_cast<std::ptrdiff_t>(of.index[l] - bay * per_bay_) * rows;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(at.count); ++k) {
+      const int row = at.index[k] - start;
+      if (row < 0 || row >= rows) continue;
+      sum.acceleration += at.value[k] * of.value[l] * column[row];
+      sum.slope += at.gradient[k] * of.value[l] * column[row];
+    }
+  }
   return sum;
 }
 

@@ -48,10 +48,12 @@ class TrackWindow {
   void predict();
   /// Motion at the end of the step without forces.
   PortMotion free_motion(const PortShape& shape) const;
-  /// Acceleration y at `at` by a unit force at `of` [1/kg].
-  double response(const PortShape& at, const PortShape& of);
-  /// The same for the slope N' y at `at` [1/(kg m)].
-  double slope_response(const PortShape& at, const PortShape& of);
+  /// By a unit force at `of`: the acceleration N y at `at`, and the slope N' y.
+  struct Response {
+    double acceleration = 0;  ///< [1/kg]
+    double slope = 0;         ///< [1/(kg m)]
+  };
+  Response response(const PortShape& at, const PortShape& of);
   /// Ends the step with the forces F at the places `shapes`.
   void accept(const std::vector<PortShape>& shapes, const Eigen::VectorXd& F);
 
@@ -92,7 +94,6 @@ class TrackWindow {
   void subtract_end_damping(const Eigen::VectorXd& rate, Eigen::VectorXd& force) const;
   const Table& table_of(int bay);
   void fill(Table& table, int bay) const;
-  double inverse_entry(int row, int column);
 
   const TrackModel& model_;
   int bays_, per_bay_, size_, padding_;

@@ -103,7 +103,7 @@ inline constexpr double usual_track_stiffness = 1e8;
 ///
 ///   body 8-60 t, frame 1.7-7 t, wheel pair 0.35-2.3 t
 ///   primary 0.5-5 MN/m per pair, of rubber to 44 MN/m; secondary 0.2-6 MN/m per gear
-///   modes on rigid rails (vehicle_modes.hpp) in which a body moves most: 0.4-2 Hz
+///   modes on rigid rails (vehicle_modes.hpp) in which a body moves most: bounce 0.4-2 Hz, pitch 0.4-2.5 Hz
 ///   modes in which a frame bounces most: 4-12 Hz, on rubber primaries to 40 Hz
 ///   the whole wheel pair, mass m, on the track: sqrt(k / m) / (2 pi) from 30 to 90 Hz
 ///

@@ -20,7 +20,7 @@ namespace easydyn::vehicles {
 ///
 /// Static axle loads: traction cars 17 t, end carriages' own bogies 14.5 t, first Jacobs bogies 15.75 t, others 17 t.
 ///
-/// Unusual, and left as its source has it: the pitch inertia of the traction cars, half of m L^2 / 12, by which they
+/// Left as its source has it: the pitch inertia of the traction cars, half of m L^2 / 12, by which they
 /// pitch at 2.17 Hz.
 ///
 /// Source: G. Degrande, L. Schillemans, Free field vibrations during the passage of a Thalys high-speed train at

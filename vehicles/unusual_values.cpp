@@ -44,7 +44,8 @@ std::vector<std::string> unusual_values(const RailVehicle& vehicle, double track
     if (mode.damping >= 1) continue;  // creeps back, has no frequency
     const std::string quantity = "frequency of the mode \"" + mode.motion + "\"";
     if (mode.part == VehicleMode::Part::body) {
-      check("", quantity, mode.frequency, 0.4 * Hz, 2 * Hz, "Hz");
+      // The stiff secondary suspensions of traction cars pitch a little faster than anything bounces.
+      check("", quantity, mode.frequency, 0.4 * Hz, (mode.is_pitch ? 2.5 : 2) * Hz, "Hz");
     } else if (mode.part == VehicleMode::Part::frame && !mode.is_pitch) {
       const auto& pairs = vehicle.gears[static_cast<std::size_t>(mode.index)].wheel_pairs;
       const bool is_rubber = std::ranges::all_of(pairs, &WheelPair::has_rubber_primary);

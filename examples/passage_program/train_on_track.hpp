@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "easydyn/easydyn.hpp"
@@ -8,27 +9,43 @@
 #include "track/profile.hpp"
 #include "track/wheel_rail_contact.hpp"
 #include "vehicles/planar_vehicle.hpp"
+#include "vehicles/simplified_vehicle.hpp"
 
 namespace easydyn::examples {
+
+/// What is known of the train: "full", "three-masses", "quarter" or "wheel-pair" (vehicles/simplified_vehicle.hpp).
+std::unique_ptr<vehicles::VehicleModel> make_vehicle(System& system, const vehicles::RailVehicle& data,
+                                                     const std::string& detail);
 
 /// A train at constant speed on a flexible track, with a contact under every wheel pair.
 class TrainOnTrack : public System {
  public:
-  /// @param x0       of the train's origin at t = 0 [m]
-  /// @param speed    [m/s]
-  /// @param hertz    constant of one wheel [N/m^1.5]
+  /// @param x0      of the train's origin at t = 0 [m]
+  /// @param speed   [m/s]
+  /// @param shape   of all wheels, at angles spread by the golden ratio; null: round
   TrainOnTrack(const vehicles::RailVehicle& data, const track::TrackModel& model, double x0, double speed,
-               const std::shared_ptr<const track::Profile>& profile, double hertz = 1e11)
-      : System("train on track"), train(*this, data), track(*this, model), x0_(x0), speed_(speed) {
-    for (const auto& w : train.wheels())
-      wheels.emplace_back(w.name, track::HertzContact(hertz, w.contacts), w.radius, w.static_load, profile);
+               const std::shared_ptr<const track::Profile>& profile, const std::string& detail = "full",
+               const std::shared_ptr<const track::WheelShape>& shape = nullptr, double shape_begin = 0)
+      : System("train on track"),
+        train(make_vehicle(*this, data, detail)),
+        track(*this, model),
+        x0_(x0),
+        speed_(speed) {
+    for (const auto& w : train->wheels()) {
+      wheels.emplace_back(w.name, track::HertzContact(hertz_constant, w.contacts), w.radius, w.static_load,
+                          profile);
+      const double phase = 2 * units::pi * 0.618034 * static_cast<double>(wheels.size());
+      if (shape)
+        wheels.back().set_wheel_shape(shape, {.phase = phase, .fade_begin = shape_begin, .fade_length = 10});
+    }
   }
 
-  vehicles::PlanarVehicle train;
+  static constexpr double hertz_constant = 1e11;  ///< of one wheel [N/m^1.5]; F: railFE
+  std::unique_ptr<vehicles::VehicleModel> train;
   track::FlexibleTrack track;
   std::vector<track::WheelRailContact> wheels;
 
-  /// All that touches the track, in order.
+  /// All that touches the rail, in order.
   std::vector<const track::TrackContact*> contacts() const {
     std::vector<const track::TrackContact*> list;
     for (const track::WheelRailContact& w : wheels) list.push_back(&w);
@@ -36,15 +53,25 @@ class TrainOnTrack : public System {
   }
 
  protected:
-  void positions() override { train.place(x0_ + speed_ * time()); }
+  void positions() override { train->place(x0_ + speed_ * time()); }
   void forces() override {
     gravity(vehicles::gravity);
-    train.apply_suspensions();
-    for (std::size_t w = 0; w < wheels.size(); ++w) wheels[w].apply(*train.wheels()[w].body, track);
+    train->apply_suspensions();
+    for (std::size_t w = 0; w < wheels.size(); ++w) wheels[w].apply(*train->wheels()[w].body, track);
   }
 
  private:
   double x0_, speed_;
 };
+
+inline std::unique_ptr<vehicles::VehicleModel> make_vehicle(System& system, const vehicles::RailVehicle& data,
+                                                            const std::string& detail) {
+  using vehicles::VehicleDetail;
+  if (detail == "full") return std::make_unique<vehicles::PlanarVehicle>(system, data);
+  const VehicleDetail level = detail == "three-masses" ? VehicleDetail::three_masses
+                              : detail == "quarter"    ? VehicleDetail::quarter
+                                                       : VehicleDetail::wheel_pair;
+  return std::make_unique<vehicles::SimplifiedVehicle>(system, data, level);
+}
 
 }  // namespace easydyn::examples

@@ -49,7 +49,7 @@ TEST(TramPassage, BeginsWithoutATransientOnAPerfectRail) {
     // Contact forces stay within 0.5 % of the static load, the sleeper passing included.
     for (std::size_t w = 0; w < contacts.size(); ++w) {
       const auto force = p.contact_force.col(static_cast<Eigen::Index>(w));
-      EXPECT_LT(force.maxCoeff() - force.minCoeff(), 5e-3 * contacts[w]->static_load())
+      EXPECT_LT(force.maxCoeff() - force.minCoeff(), 5e-3 * system.contacts[w].static_load())
           << contacts[w]->name();
     }
   }

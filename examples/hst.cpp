@@ -1,0 +1,40 @@
+// A high-speed train on a rough rail: contact forces, track motion and the load on the ground (step 1 of a prediction).
+//
+//   [traction car] [end car ]|[ car ]|[ car ]| ... |[ end car] [traction car]      10 cars, 26 axles, 200 m, --> v
+//     oo    oo      oo       oo      oo      oo   oo       oo    oo    oo
+//   ~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~~     rail, random unevenness
+//    |    |    |    |    |    |    |    |    |    |    |    |    |    |    |       pads, sleepers, ballast
+//   (m_f)~(m_f)~(m_f)~(m_f)~ ...                                                    coupled lumped mass (CLM) foundation
+//
+// Shows: an articulated train (Jacobs bogies) at 300 km/h; an irregularity drawn from a spectrum; a window of track that
+// travels with the train; a run-in before anything is recorded; several speeds in one call:
+//   ./run hst --speed 150,200,250,300
+// `./run hst` goes on with the ground and the report.
+// Run: ./run hst
+// Prints: vehicle weight                                             4189 kN
+// Prints: static sum of the ballast reactions / weight                  1
+// Reference: G. Degrande, L. Schillemans, Free field vibrations during the passage of a Thalys high-speed train at
+// variable speed, J. Sound Vib. 247(1), 2001.
+
+#include "examples/passage_program/passage_program.hpp"
+#include "vehicles/thalys_like.hpp"
+
+using namespace easydyn;
+
+int main(int argc, char** argv) {
+  examples::PassageProgram hst;
+  hst.name = "hst";
+  hst.title = "A high-speed train on a rough rail: contact forces, track motion and the load on the ground.";
+  hst.vehicle = vehicles::thalys_like();
+  hst.track = track::thalys_like_track();
+  hst.speed = 300;  // km/h
+  hst.top_speed = 400;
+  hst.irregularity = "sncf_good";
+  hst.time_step = 2e-4;  // s
+  hst.loaded = 50;       // m: the ground is loaded from -50 m to 50 m about the receivers
+  hst.approach = 10;     // m
+  hst.heights = {.floor = 1.1, .width = 2.8};
+  hst.picture_width = 60;
+  hst.followed = "car 2 body";
+  return examples::run_passage_program(hst, argc, argv);
+}
