@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
+#include "easydyn/require.hpp"
 #include "easydyn/results/channels.hpp"
 #include "easydyn/results/result_file.hpp"
 #include "easydyn/visu/json.hpp"
 #include "easydyn/visu/parameter_json.hpp"
+#include "easydyn/visu/table_json.hpp"
 
 namespace easydyn::track {
 
@@ -22,9 +26,21 @@ std::string to_json(const std::vector<SummaryFigure>& summary) {
 
 }  // namespace
 
-void write_passage(const std::filesystem::path& path, const Passage& p, const std::string& description,
-                   const std::vector<Parameter>& parameters, const std::vector<SummaryFigure>& summary,
-                   const std::string& scene, const results::Provenance& provenance) {
+ProfileSamples sample_profile(const Profile& profile, double wheel_radius, double first_x, double last_x,
+                              double spacing) {
+  const std::string object = "samples of a rail profile";
+  require_finite(object, "first x", first_x, "m");
+  require(std::isfinite(last_x) && last_x > first_x, object, "last x", last_x, "m",
+          fmt::format("> {:g} m, the first x", first_x));
+  require_positive(object, "spacing", spacing, "m");
+  const auto n = static_cast<Eigen::Index>(std::ceil((last_x - first_x) / spacing - 1e-9)) + 1;
+  ProfileSamples samples{Eigen::VectorXd::LinSpaced(n, first_x, last_x), Eigen::VectorXd(n), wheel_radius};
+  for (Eigen::Index i = 0; i < n; ++i) samples.height[i] = profile.at(samples.x[i], wheel_radius).r;
+  return samples;
+}
+
+void write_passage(const std::filesystem::path& path, const Passage& p, const PassageReport& report,
+                   const results::Provenance& provenance) {
   results::ResultFile file(path, provenance);
   file.write_vector("/time", p.time, {"s", "output time, uniform step", "time"});
 
@@ -73,12 +89,24 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const st
                     {"J", "work of the drive since the start", "scalar"});
 
   file.write_text("/foundation/kind", p.foundation, "what the ballast rests on");
-  file.write_text("/description", description, "what was run, one sentence");
-  file.write_text("/parameters", visu::to_json(parameters), "JSON: group, name, value, unit, source");
-  file.write_text("/summary", to_json(summary), "JSON: name, value, unit");
+  file.write_text("/description", report.description, "what was run, one sentence");
+  file.write_text("/parameters", visu::to_json(report.parameters), "JSON: group, name, value, unit, source");
+  file.write_text("/summary", to_json(report.summary), "JSON: name, value, unit");
   if (!p.warnings.empty())
     file.write_names("/warnings", p.warnings, "where a result leaves the range of the model");
-  if (!scene.empty()) file.write_text("/scene", scene, "JSON of the animated scene");
+  if (report.scene) file.write_text("/scene", visu::to_json(*report.scene), "JSON of the animated scene");
+  if (!report.drawing.empty()) file.write_text("/vehicle/drawing", report.drawing, "SVG: side elevation");
+  if (!report.tables.empty())
+    file.write_text("/vehicle/tables", visu::to_json(report.tables), "JSON: title, header, rows");
+  if (report.profile) {
+    file.write_vector("/profile/x", report.profile->x,
+                      {"m", "where the rail profile is given", "x along the track"});
+    file.write_vector("/profile/height", report.profile->height,
+                      {"m",
+                       fmt::format("height of the centre of a wheel of radius {:g} m over the unloaded rail",
+                                   report.profile->wheel_radius),
+                       "upward"});
+  }
   file.commit();
 }
 

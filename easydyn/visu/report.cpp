@@ -11,6 +11,7 @@
 #include "easydyn/results/pending_file.hpp"
 #include "easydyn/visu/html.hpp"
 #include "easydyn/visu/number_text.hpp"
+#include "easydyn/visu/svg.hpp"
 #include "easydyn/visu/viewer_bundle.hpp"
 
 namespace easydyn::visu {
@@ -25,6 +26,7 @@ constexpr const char* content_policy =
 
 constexpr size_t curve_points_of_a_page = 300'000;   // 8 bytes each, 4/3 as base64: about 3 MB
 constexpr size_t scene_numbers_of_a_page = 300'000;  // 4 bytes each: about 1.6 MB
+constexpr size_t drawing_bytes_of_a_page = 1'000'000;
 
 constexpr const char* stage = R"(<div class="frame"><div class="stage">
 <div class="overlay"><span data-control="time"></span><span data-control="note"></span></div></div>
@@ -105,6 +107,16 @@ class Page {
     scenes_ += (scenes_.empty() ? "" : ",\n") + to_json(scene, times_per_scene_);
   }
 
+  void add_drawing(const std::string& text, const std::string& caption) {
+    const svg::Drawing drawing = svg::read(text, drawing_bytes_of_a_page - drawing_bytes_);
+    drawing_bytes_ += text.size();
+    html_ += "<figure class=\"drawing\">\n";
+    add_figure_title(drawing.title);
+    html_ += fmt::format("<div class=\"scroll\">{}</div>\n", drawing.markup);
+    add_caption(caption);
+    html_ += "</figure>\n";
+  }
+
   void add_table(const Table& table) {
     std::vector<bool> right(table.header.size(), !table.rows.empty());
     for (const auto& row : table.rows) {
@@ -113,9 +125,16 @@ class Page {
                                      row.size(), table.header.size()));
       for (size_t c = 0; c < row.size(); ++c) right[c] = right[c] && is_numeric(row[c]);
     }
-    if (!table.caption.empty())
-      html_ += fmt::format("<p class=\"heading\"><span class=\"number\">Table {}</span> {}</p>\n", ++table_,
-                           html::inline_text(table.caption));
+    const std::string heading = table.caption.empty()
+                                    ? ""
+                                    : fmt::format("<span class=\"number\">Table {}</span> {}", ++table_,
+                                                  html::inline_text(table.caption));
+    if (table.is_folded)
+      html_ += fmt::format(
+          "<details><summary class=\"heading\">{}<span class=\"screen\"> ({} rows)</span></summary>\n",
+          heading, table.rows.size());
+    else if (!heading.empty())
+      html_ += fmt::format("<p class=\"heading\">{}</p>\n", heading);
     html_ += "<div class=\"scroll\"><table class=\"data\"><thead><tr>";
     for (size_t c = 0; c < right.size(); ++c)
       html_ += fmt::format("<th{}>{}</th>", right[c] ? " class=\"right\"" : "",
@@ -127,7 +146,7 @@ class Page {
         html_ += fmt::format("<td{}>{}</td>", right[c] ? " class=\"right\"" : "", html::inline_text(row[c]));
       html_ += "</tr>\n";
     }
-    html_ += "</tbody></table></div>\n";
+    html_ += table.is_folded ? "</tbody></table></div></details>\n" : "</tbody></table></div>\n";
   }
 
   void add_parameters(const std::vector<Parameter>& parameters) {
@@ -191,6 +210,7 @@ class Page {
 
   int points_per_curve_, times_per_scene_;
   int section_ = 0, subsection_ = 0, figure_ = 0, table_ = 0, chart_count_ = 0, scene_count_ = 0;
+  size_t drawing_bytes_ = 0;
   std::string html_, contents_, charts_, scenes_;
 };
 
@@ -270,6 +290,11 @@ Report& Report::add_animation(Scene scene, std::string caption) {
   return *this;
 }
 
+Report& Report::add_drawing(std::string svg, std::string caption) {
+  blocks_.push_back(Drawing{std::move(svg), std::move(caption)});
+  return *this;
+}
+
 std::string Report::html() const {
   // share the page's size among its curves and scenes
   size_t curves = 1, numbers_per_time = 1;
@@ -315,6 +340,7 @@ std::string Report::html() const {
             [&](const Table& b) { page.add_table(b); },
             [&](const std::vector<Parameter>& b) { page.add_parameters(b); },
             [&](const Animation& b) { page.add_animation(b.scene, b.caption); },
+            [&](const Drawing& b) { page.add_drawing(b.svg, b.caption); },
         },
         block);
   }

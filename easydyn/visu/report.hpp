@@ -17,6 +17,7 @@ struct Table {
   std::vector<std::string> header;  ///< with units, e.g. "PPV [mm/s]"
   std::vector<std::vector<std::string>> rows;
   std::string caption = {};
+  bool is_folded = false;  ///< only its caption is shown until the reader opens it; paper has all of it
 };
 
 /// One number that matters, shown large. `remark` says what it is measured against.
@@ -50,9 +51,12 @@ class Report {
   Report& add_parameters(std::vector<Parameter> parameters);  ///< with their sources, in groups of one name
   Report& add_text(std::string title, std::string text);      ///< verbatim, e.g. an input file
   Report& add_animation(Scene scene, std::string caption = "");
+  /// An SVG image over the full width, titled by its `<title>`: lines, shapes and text, with a viewBox, nothing that
+  /// runs or loads; all drawings of a page together at most 1 MB.
+  Report& add_drawing(std::string svg, std::string caption = "");
 
   /// The page. Curves are thinned so that it stays below about 5 MB.
-  /// @throws ModelError if a chart or a scene is not sound
+  /// @throws ModelError if a chart, a table, a drawing or a scene is not sound
   std::string html() const;
 
   /// Writes the page under a temporary name and renames it when complete.
@@ -83,8 +87,11 @@ class Report {
     Scene scene;
     std::string caption;
   };
+  struct Drawing {
+    std::string svg, caption;
+  };
   using Block = std::variant<Facts, Heading, Paragraph, List, Note, std::vector<KeyFigure>,
-                             std::vector<Chart>, Table, std::vector<Parameter>, Verbatim, Animation>;
+                             std::vector<Chart>, Table, std::vector<Parameter>, Verbatim, Animation, Drawing>;
 
   std::string title_, subtitle_;
   std::vector<Block> blocks_;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <iostream>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "easydyn/results/progress.hpp"
@@ -21,6 +22,10 @@
 #include "track/passage_files.hpp"
 #include "track/profile_file.hpp"
 #include "track/track_scene.hpp"
+#include "vehicles/axle_loads.hpp"
+#include "vehicles/vehicle_drawing.hpp"
+#include "vehicles/vehicle_modes.hpp"
+#include "vehicles/vehicle_tables.hpp"
 
 namespace easydyn::examples {
 
@@ -236,6 +241,26 @@ std::vector<std::string> warn_of_speed(const PassageProgram& program, const Run&
   return warnings;
 }
 
+std::vector<visu::Table> tabulate(const vehicles::RailVehicle& vehicle) {
+  return {vehicles::axle_load_table(vehicle, vehicles::compute_axle_loads(vehicle)),
+          vehicles::mass_balance_table(vehicle),
+          vehicles::mode_table(vehicles::compute_vehicle_modes(vehicle))};
+}
+
+/// The rail under the train while it is recorded; near the joint alone where the rest is smooth.
+std::optional<track::ProfileSamples> sample_profile(const PassageProgram& program, const Run& run,
+                                                    const Options& options) {
+  double radius = 0;  // of the wheel that smooths most
+  for (const auto& gear : program.vehicle.gears)
+    for (const auto& pair : gear.wheel_pairs) radius = std::max(radius, pair.radius.value);
+  if (run.is_rough) {
+    const double end = run.course.stop + run.course.reach;
+    return track::sample_profile(*run.profile, radius, -end, end, 2 * cm);
+  }
+  if (options.step_height == 0) return std::nullopt;
+  return track::sample_profile(*run.profile, radius, -1 * m, 1 * m, 1 * mm);
+}
+
 int run_one(const PassageProgram& program, const Options& options, const std::string& command) {
   Run run(program, options, options.speeds.front() * km / h);
   const std::string description = describe(program, options, run);
@@ -266,10 +291,14 @@ int run_one(const PassageProgram& program, const Options& options, const std::st
       .command = command,
       .convention =
           "x along the track, y left, z up; track displacements and ground loads positive downward"};
-  const bool has_scene = options.detail == "full";
-  track::write_passage(options.output / "results.h5", run.passage, description,
-                       list_parameters(program, options, run), summary,
-                       has_scene ? visu::to_json(make_scene(program, run)) : "", provenance);
+  track::PassageReport report{.description = description,
+                              .parameters = list_parameters(program, options, run),
+                              .summary = summary,
+                              .drawing = vehicles::draw_vehicle(program.vehicle),
+                              .tables = tabulate(program.vehicle),
+                              .profile = sample_profile(program, run, options)};
+  if (options.detail == "full") report.scene = make_scene(program, run);
+  track::write_passage(options.output / "results.h5", run.passage, report, provenance);
   track::write_passage_channels(options.output / "channels.csv", run.passage, 0);
 
   soil::SurfaceLoads loads;

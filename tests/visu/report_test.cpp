@@ -109,6 +109,40 @@ TEST(Report, RefusesATableWhoseRowsDoNotFitItsHeadings) {
               HasSubstr("table \"indicators\": a row of 1 cells under 2"));
 }
 
+TEST(Report, FoldsATableUnderItsCaption) {
+  Report report("page");
+  report.add_table({{"axle", "load [kN]"}, {{"1", "142"}, {"2", "143"}}, "Axle loads", true});
+  const std::string page = report.html();
+  EXPECT_THAT(
+      page,
+      HasSubstr("<details><summary class=\"heading\"><span class=\"number\">Table 1</span> Axle loads"));
+  EXPECT_THAT(page, HasSubstr("(2 rows)"));
+  EXPECT_THAT(page, HasSubstr("</table></div></details>"));
+}
+
+TEST(Report, SetsADrawingOverTheFullWidthWithRoleAndTitle) {
+  Report report("page");
+  report.add_drawing("<?xml version=\"1.0\"?>\n<svg viewBox=\"0 0 10 10\"><title>A &amp; B</title></svg>\n",
+                     "to scale");
+  const std::string page = report.html();
+  EXPECT_THAT(page, HasSubstr("<figure class=\"drawing\">"));
+  EXPECT_THAT(page, HasSubstr("<span class=\"number\">Figure 1</span> A &amp; B</p>"));
+  EXPECT_THAT(page,
+              HasSubstr("<svg role=\"img\" viewBox=\"0 0 10 10\"><title>A &amp; B</title></svg></div>"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"caption\">to scale</p>"));
+  EXPECT_THAT(page, Not(HasSubstr("<?xml")));
+}
+
+TEST(Report, RefusesDrawingsOfMoreThanAMegabyteTogether) {
+  const std::string half =
+      "<svg viewBox=\"0 0 1 1\"><title>t</title><desc>" + std::string(600'000, 'x') + "</desc></svg>";
+  Report report("page");
+  report.add_drawing(half);
+  EXPECT_LT(report.html().size(), 5'000'000u);
+  report.add_drawing(half);
+  EXPECT_THAT(message_of<ModelError>([&] { report.html(); }), HasSubstr("must have at most"));
+}
+
 TEST(AnimationPage, HoldsTheSceneAndItsCharts) {
   const TemporaryFolder folder;
   Scene scene;

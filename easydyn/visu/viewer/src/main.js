@@ -10,6 +10,16 @@ const root = document.documentElement;
 const fail = (message) => { root.dataset.failure = message; };
 window.addEventListener('error', (event) => fail(event.message));
 
+// Paper cannot be opened: folded tables are printed whole and fold again afterwards.
+function unfoldOnPaper() {
+  let opened = [];
+  window.addEventListener('beforeprint', () => {
+    opened = [...document.querySelectorAll('details:not([open])')];
+    opened.forEach((table) => { table.open = true; });
+  });
+  window.addEventListener('afterprint', () => opened.forEach((table) => { table.open = false; }));
+}
+
 function drawPage() {
   const data = pageData();
   const charts = [...document.querySelectorAll('figure[data-chart]')].map((figure) =>
@@ -29,6 +39,7 @@ function drawPage() {
   window.addEventListener('resize', () => { clearTimeout(waiting); waiting = setTimeout(refit, 100); });
   window.addEventListener('beforeprint', refit);
   window.addEventListener('afterprint', refit);
+  unfoldOnPaper();
 
   // the chart library draws in a microtask, the browser paints before the next frame
   setTimeout(() => {
