@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
   hst.vehicle = vehicles::thalys_like();
   hst.track = track::thalys_like_track();
   hst.speed = 300;  // km/h
+  hst.least_speed = 80;
   hst.top_speed = 400;
   hst.irregularity = "sncf_good";
   hst.time_step = 2e-4;             // s

@@ -72,7 +72,7 @@ Course plan(const PassageProgram& program, bool is_rough) {
     for (const auto& pair : gear.wheel_pairs) course.reach = std::max(course.reach, std::abs(pair.x));
   course.stop = program.loaded + program.approach + course.reach;
   course.start = -course.stop;
-  course.run_in = is_rough ? 2 * course.reach + 25 * m : 0;
+  course.run_in = is_rough ? 2 * course.reach + 25 * m : 25 * m;
   course.rough_begin = course.start - course.run_in + course.reach + 2 * m;
   return course;
 }
@@ -88,9 +88,12 @@ struct Run {
 
     // The sleepers are centred between the bays about x = 0, so that x = 0 is mid-span.
     const double spacing = data.sleeper_spacing;
-    const double half_length = course.stop + course.run_in + course.reach + program.margin + 3 * spacing;
-    const int half_bays = static_cast<int>(std::ceil(half_length / spacing));
-    const track::TrackModel model(data, 2 * half_bays + 1, -(half_bays + 0.5) * spacing);
+    // What comes back from the ends of the window, 32 m away, matters more where wheels lift off.
+    const double margin = program.margin + (options.step_height != 0 || options.wheel_flat > 0 ? 14 * m : 0);
+    const double beyond = course.reach + margin + 3 * spacing;
+    const int bays_behind = static_cast<int>(std::ceil((course.stop + course.run_in + beyond) / spacing)),
+              bays_ahead = static_cast<int>(std::ceil((course.stop + beyond) / spacing));
+    const track::TrackModel model(data, bays_behind + bays_ahead + 1, -(bays_behind + 0.5) * spacing);
 
     // Excitation: the joint at x = 0, and what is rough all the way.
     std::vector<std::shared_ptr<const track::Profile>> parts;
@@ -102,8 +105,8 @@ struct Run {
                                      .end = course.stop + course.reach + 30 * m,
                                      .seed = options.seed}));
     if (!options.profile.empty())
-      parts.push_back(std::make_shared<track::SplineProfile>(track::read_profile(
-          options.profile, {.spline = {.beyond = track::BeyondPoints::zero, .taper = 10 * m}})));
+      parts.push_back(std::make_shared<track::SplineProfile>(
+          track::read_profile(options.profile)));  // its ends are held beyond it
     profile = std::make_shared<track::ProfileSum>(parts);
     const std::shared_ptr<const track::WheelShape> flat =
         options.wheel_flat > 0
@@ -115,8 +118,11 @@ struct Run {
     passage_options.duration = (course.stop - course.start) / speed;
     passage_options.run_in = course.run_in / speed;
     passage_options.step = options.time_step;
-    passage_options.output_step = std::max(1.0, std::round(5e-4 / options.time_step)) * options.time_step;
-    passage_options.window = 2 * (course.reach + program.margin);
+    const double output_step = std::clamp(0.02 * m / speed, 5e-4, 1e-3);  // 0.5 kHz at least
+    passage_options.output_step =
+        std::max(1.0, std::round(output_step / options.time_step)) * options.time_step;
+    passage_options.start_difference = std::min(2e-3, 0.05 * spacing / speed);
+    passage_options.window = 2 * (course.reach + margin);
     passage_options.first_sleeper_x = -program.loaded - program.approach;
     passage_options.last_sleeper_x = program.loaded + program.approach;
   }
@@ -125,11 +131,16 @@ struct Run {
     passage = track::compute_passage(*system, system->track, system->contacts(), passage_options, progress);
   }
 
+  double static_load(const track::TrackContact& contact) const {
+    const auto* const wheel = dynamic_cast<const track::WheelRailContact*>(&contact);
+    return wheel ? wheel->static_load() : contact.force();
+  }
   double largest_load_factor() const {
     double largest = 0;
-    for (std::size_t w = 0; w < system->wheels.size(); ++w)
-      largest = std::max(largest, passage.largest_contact_force[static_cast<Eigen::Index>(w)] /
-                                      system->wheels[w].static_load());
+    const std::vector<const track::TrackContact*> contacts = system->contacts();
+    for (std::size_t w = 0; w < contacts.size(); ++w)
+      largest = std::max(
+          largest, passage.largest_contact_force[static_cast<Eigen::Index>(w)] / static_load(*contacts[w]));
     return largest;
   }
   double energy_imbalance() const {
@@ -178,7 +189,8 @@ visu::Scene make_scene(const PassageProgram& program, const Run& run) {
 
 std::vector<track::SummaryFigure> summarise(const Run& run) {
   const track::Passage& passage = run.passage;
-  const double weight = run.system->train->weight();
+  double weight = 0;
+  for (const track::TrackContact* contact : run.system->contacts()) weight += run.static_load(*contact);
   return {
       {"vehicle weight", weight / kN, "kN"},
       {"static sum of the ballast reactions / weight", passage.static_ballast_reaction / weight, ""},
@@ -206,8 +218,10 @@ std::vector<Parameter> list_parameters(const PassageProgram& program, const Opti
            {"run", "acceleration of gravity", vehicles::gravity, "m/s2", "conventional"}})
     parameters.push_back(p);
   if (options.irregularity != "none")
-    parameters.push_back({"run", "seed of the irregularity " + options.irregularity, double(options.seed), "",
-                          track::irregularity_spectrum(options.irregularity).source()});
+    parameters.push_back({"run", "seed of the irregularity " + options.irregularity, double(options.seed),
+                          "1", track::irregularity_spectrum(options.irregularity).source()});
+  parameters.push_back({"run", "way driven before the recording", run.course.run_in, "m", "choice"});
+  parameters.push_back({"run", "half length of the loaded ground", program.loaded, "m", "choice"});
   if (options.wheel_flat > 0)
     parameters.push_back({"run", "length of the flat on every wheel pair", options.wheel_flat * mm, "m",
                           "option --wheel-flat, rounded"});
@@ -233,11 +247,13 @@ std::vector<std::string> warn_of_speed(const PassageProgram& program, const Run&
   std::vector<std::string> warnings;
   if (const auto warning = track::warn_of_critical_speed(run.data, run.speed)) warnings.push_back(*warning);
   if (program.rayleigh_speed > 0 && run.speed > 0.7 * program.rayleigh_speed)
-    warnings.push_back(
-        fmt::format("speed {:.1f} m/s is more than 0.7 of the Rayleigh speed {:.1f} m/s of the upper layer "
-                    "of the ground: its waves keep "
-                    "up with the train, which the foundation of the track does not know",
-                    run.speed, program.rayleigh_speed));
+    warnings.push_back(fmt::format(
+        "speed {:.1f} m/s is {:.2f} of the Rayleigh speed {:.1f} m/s of the upper layer of the ground: {}; "
+        "the "
+        "foundation of the track, fitted at rest, does not know that",
+        run.speed, run.speed / program.rayleigh_speed, program.rayleigh_speed,
+        run.speed < program.rayleigh_speed ? "its waves gather around the train"
+                                           : "the train outruns its waves, which trail it as a wake"));
   return warnings;
 }
 
@@ -335,8 +351,10 @@ int run_sweep(const PassageProgram& program, const Options& options) {
         run.compute();
         summaries[i] = summarise(run);
         warnings[i] = warn_of_speed(program, run);
+        for (const std::string& warning : run.passage.warnings) warnings[i].push_back(warning);
       } catch (const std::exception& e) {
         failures[i] = e.what();
+        warnings[i].push_back(std::string("failed: ") + e.what());
       }
       const std::scoped_lock lock(printing);
       fmt::print("{}: {:g} km/h {}\n", program.name, options.speeds[i],
@@ -347,23 +365,23 @@ int run_sweep(const PassageProgram& program, const Options& options) {
   for (unsigned i = 0; i < std::clamp(std::thread::hardware_concurrency(), 1u, unsigned(n)); ++i)
     threads.emplace_back(work);
   for (std::thread& thread : threads) thread.join();
-  for (std::size_t i = 0; i < n; ++i)
-    if (!failures[i].empty())
-      throw SolverError(fmt::format("sweep at {:g} km/h: {}", options.speeds[i], failures[i]));
+  const auto first = std::ranges::find_if(summaries, [](const auto& list) { return !list.empty(); });
+  if (first == summaries.end()) throw SolverError("sweep: " + failures[0]);
 
   // Table, chart, warnings.
   const std::vector<std::size_t> shown = {2, 3, 4, 5, 6, 7, 8};  // of the summary: not the weights
   visu::Table table{{"speed [km/h]"}, {}, "Speeds"};
   for (const std::size_t k : shown) {
-    const track::SummaryFigure& f = summaries[0][k];
+    const track::SummaryFigure& f = (*first)[k];
     table.header.push_back(f.unit.empty() ? f.name : fmt::format("{} [{}]", f.name, f.unit));
   }
   Eigen::VectorXd speeds = Eigen::VectorXd::Map(options.speeds.data(), static_cast<Eigen::Index>(n));
   std::vector<visu::Chart> charts;
   for (const std::size_t k : shown) {
     Eigen::VectorXd values(speeds.size());
-    for (std::size_t i = 0; i < n; ++i) values[static_cast<Eigen::Index>(i)] = summaries[i][k].value;
-    const track::SummaryFigure& f = summaries[0][k];
+    for (std::size_t i = 0; i < n; ++i)
+      values[static_cast<Eigen::Index>(i)] = summaries[i].empty() ? std::nan("") : summaries[i][k].value;
+    const track::SummaryFigure& f = (*first)[k];
     if (values.isZero(0)) continue;  // no contact is lost
     const std::string quantity = f.unit == "kN"   ? "force"
                                  : f.unit == "mm" ? "deflection"
@@ -376,7 +394,8 @@ int run_sweep(const PassageProgram& program, const Options& options) {
   }
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<std::string> row = {fmt::format("{:g}", options.speeds[i])};
-    for (const std::size_t k : shown) row.push_back(fmt::format("{:.4g}", summaries[i][k].value));
+    for (const std::size_t k : shown)
+      row.push_back(summaries[i].empty() ? "failed" : fmt::format("{:.4g}", summaries[i][k].value));
     table.rows.push_back(row);
   }
   visu::Report report(program.title, fmt::format("{} speeds, step 1 of a prediction: train and track", n));
@@ -397,7 +416,7 @@ int run_sweep(const PassageProgram& program, const Options& options) {
     for (const std::string& warning : warnings[i])
       fmt::print("{}: warning: {:g} km/h: {}\n", program.name, options.speeds[i], warning);
   fmt::print("{}: wrote {}\n", program.name, (options.output / "sweep.html").string());
-  return 0;
+  return std::ranges::all_of(failures, &std::string::empty) ? 0 : 1;
 }
 
 /// Refuses what is not a number from `least` to `most`; NaN is none.
@@ -437,9 +456,10 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
                  "height of a rail step at x = 0, up > 0, down < 0, -20 to 20 [mm]")
       ->capture_default_str()
       ->check(in_range(-20, 20));
-  app.add_option("--irregularity", options.irregularity, "spectrum of the rail's unevenness")
-      ->capture_default_str()
-      ->check(CLI::IsMember(spectra));
+  CLI::Option* const irregularity =
+      app.add_option("--irregularity", options.irregularity,
+                     "spectrum of the rail's unevenness; none by default with --profile");
+  irregularity->capture_default_str()->check(CLI::IsMember(spectra));
   app.add_option("--seed", options.seed, "of the irregularity: equal seeds, equal rails")
       ->capture_default_str();
   app.add_option("--profile", options.profile, "file of a measured profile: x [m], r [mm]")
@@ -454,7 +474,7 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   app.add_option("--foundation", options.foundation, "what the ballast rests on")
       ->capture_default_str()
       ->check(CLI::IsMember({"rigid", "winkler", "winkler-mass", "clm"}));
-  app.add_option("--time-step", options.time_step, "of Newmark's method, 1e-6 to 1e-3 [s]")
+  app.add_option("--time-step", options.time_step, "of Newmark's method, 1e-6 to 5e-4 [s]")
       ->capture_default_str()
       ->check(in_range(1e-6, 1e-3));
   app.add_option("--output", options.output, "folder of the results")->capture_default_str();
@@ -463,6 +483,7 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  if (!options.profile.empty() && irregularity->count() == 0) options.irregularity = "none";
   try {
     if (options.output.empty()) throw InputError("--output is empty, must name a folder");
     std::ranges::sort(options.speeds);

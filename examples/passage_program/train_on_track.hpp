@@ -5,15 +5,19 @@
 #include <vector>
 
 #include "easydyn/easydyn.hpp"
+#include "track/hanging_sleepers.hpp"
+#include "track/moving_load.hpp"
 #include "track/passage.hpp"
 #include "track/profile.hpp"
 #include "track/wheel_rail_contact.hpp"
+#include "vehicles/moving_loads.hpp"
 #include "vehicles/planar_vehicle.hpp"
 #include "vehicles/simplified_vehicle.hpp"
 
 namespace easydyn::examples {
 
-/// What is known of the train: "full", "three-masses", "quarter" or "wheel-pair" (vehicles/simplified_vehicle.hpp).
+/// What is known of the train: "full", "three-masses", "quarter", "wheel-pair" (vehicles/simplified_vehicle.hpp), or null:
+/// "moving-loads".
 std::unique_ptr<vehicles::VehicleModel> make_vehicle(System& system, const vehicles::RailVehicle& data,
                                                      const std::string& detail);
 
@@ -31,6 +35,13 @@ class TrainOnTrack : public System {
         track(*this, model),
         x0_(x0),
         speed_(speed) {
+    if (!train) {
+      for (const vehicles::MovingLoad& load : vehicles::moving_loads(data).loads) {
+        loads.emplace_back(load.name, load.load);
+        load_x_.push_back(load.x);
+      }
+      return;
+    }
     for (const auto& w : train->wheels()) {
       wheels.emplace_back(w.name, track::HertzContact(hertz_constant, w.contacts), w.radius, w.static_load,
                           profile);
@@ -44,29 +55,38 @@ class TrainOnTrack : public System {
   std::unique_ptr<vehicles::VehicleModel> train;
   track::FlexibleTrack track;
   std::vector<track::WheelRailContact> wheels;
+  std::vector<track::MovingLoad> loads;  ///< instead of wheels, if nothing else is known of the train
 
   /// All that touches the rail, in order.
   std::vector<const track::TrackContact*> contacts() const {
     std::vector<const track::TrackContact*> list;
     for (const track::WheelRailContact& w : wheels) list.push_back(&w);
+    for (const track::MovingLoad& load : loads) list.push_back(&load);
     return list;
   }
 
  protected:
-  void positions() override { train->place(x0_ + speed_ * time()); }
+  void positions() override {
+    if (train) train->place(x0_ + speed_ * time());
+  }
   void forces() override {
     gravity(vehicles::gravity);
-    train->apply_suspensions();
+    if (train) train->apply_suspensions();
     for (std::size_t w = 0; w < wheels.size(); ++w) wheels[w].apply(*train->wheels()[w].body, track);
+    const double x = x0_ + speed_ * time().value();
+    for (std::size_t l = 0; l < loads.size(); ++l) loads[l].apply(x + load_x_[l], speed_, track, energy());
+    track::apply_hanging_sleepers(track, energy());
   }
 
  private:
   double x0_, speed_;
+  std::vector<double> load_x_;
 };
 
 inline std::unique_ptr<vehicles::VehicleModel> make_vehicle(System& system, const vehicles::RailVehicle& data,
                                                             const std::string& detail) {
   using vehicles::VehicleDetail;
+  if (detail == "moving-loads") return nullptr;
   if (detail == "full") return std::make_unique<vehicles::PlanarVehicle>(system, data);
   const VehicleDetail level = detail == "three-masses" ? VehicleDetail::three_masses
                               : detail == "quarter"    ? VehicleDetail::quarter
