@@ -98,7 +98,8 @@ CriticalSpeed compute_critical_speed(const TrackData& data) {
 }
 
 std::optional<std::string> warn_of_critical_speed(const TrackData& data, double speed, double fraction) {
-  require_not_negative(data.label(), "speed", speed, "m/s");
+  require_finite(data.label(), "speed", speed, "m/s");
+  speed = std::abs(speed);
   const CriticalSpeed critical = compute_critical_speed(data);
   if (speed <= fraction * critical.speed) return std::nullopt;
   return fmt::format(

@@ -32,7 +32,7 @@ CriticalSpeed compute_critical_speed(const TrackData& data);
 
 /// A warning if the speed exceeds a fraction of the critical speed of the track: the deflection of a beam on a bedding
 /// grows as 1 / sqrt(1 - (v / v_cr)^2), by 40 % at 0.7.
-/// @param speed  of the train [m/s]
+/// @param speed  of the train, either way [m/s]
 std::optional<std::string> warn_of_critical_speed(const TrackData& data, double speed, double fraction = 0.7);
 
 }  // namespace easydyn::track

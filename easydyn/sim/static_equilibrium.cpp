@@ -180,10 +180,6 @@ Eigen::MatrixXd difference_jacobian(StaticProblem& problem, const VectorXd& z) {
   return J;
 }
 
-bool is_held(StaticProblem& problem, const VectorXd& z) {
-  return Eigen::FullPivLU<Eigen::MatrixXd>(difference_jacobian(problem, z)).isInvertible();
-}
-
 // Says which coordinate is the trouble: the one that moves without stiffness, else the one least in balance.
 [[noreturn]] void throw_unsettled(StaticProblem& problem, const VectorXd& z, const std::string& why) {
   VectorXd r(problem.size());
@@ -326,7 +322,7 @@ void settle(StaticProblem& problem, VectorXd& z, double reference, const StaticO
     return;
   }
   z = start;
-  if (!options.damping || !is_held(problem, reached) || !relax(problem, z, reference, options) ||
+  if (!options.damping || !relax(problem, z, reference, options) ||
       !polish(problem, z, reference, options).empty())
     throw_unsettled(problem, reached, why);
 }
