@@ -124,6 +124,12 @@ struct Run {
     passage = track::compute_passage(*system, system->track, system->contacts(), passage_options, progress);
   }
 
+  Eigen::VectorXd static_loads() const {
+    Eigen::VectorXd loads(static_cast<Eigen::Index>(system->wheels.size()));
+    for (std::size_t w = 0; w < system->wheels.size(); ++w)
+      loads[static_cast<Eigen::Index>(w)] = system->wheels[w].static_load();
+    return loads;
+  }
   double largest_load_factor() const {
     double largest = 0;
     for (std::size_t w = 0; w < system->wheels.size(); ++w)
@@ -282,6 +288,7 @@ int run_one(const PassageProgram& program, const Options& options, const std::st
                               .summary = summary,
                               .drawing = vehicles::draw_vehicle(program.vehicle),
                               .tables = tabulate(program.vehicle),
+                              .static_loads = run.static_loads(),
                               .profile = sample_profile(program, run, options)};
   if (options.detail == "full") report.scene = make_scene(program, run);
   track::write_passage(options.output / "results.h5", run.passage, report, provenance);
