@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "easydyn/error.hpp"
 #include "easydyn/require.hpp"
 #include "easydyn/results/channels.hpp"
 #include "easydyn/results/result_file.hpp"
@@ -41,6 +42,10 @@ ProfileSamples sample_profile(const Profile& profile, double wheel_radius, doubl
 
 void write_passage(const std::filesystem::path& path, const Passage& p, const PassageReport& report,
                    const results::Provenance& provenance) {
+  const Eigen::VectorXd& loads = report.static_loads;
+  if (loads.size() > 0 && loads.size() != static_cast<Eigen::Index>(p.contact_names.size()))
+    throw ModelError(fmt::format("report of a passage: {} static loads for {} contacts", loads.size(),
+                                 p.contact_names.size()));
   results::ResultFile file(path, provenance);
   file.write_vector("/time", p.time, {"s", "output time, uniform step", "time"});
 
@@ -50,6 +55,8 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const Pa
   file.write_matrix("/contact/position", p.contact_position,
                     {"m", "position of the contact", "x along the track"});
 
+  if (loads.size() > 0)
+    file.write_vector("/contact/static", loads, {"N", "static load of each contact", "compression positive"});
   file.write_vector("/contact/largest", p.largest_contact_force,
                     {"N", "largest contact force, over every time step", "compression positive"});
   file.write_vector("/contact/smallest", p.smallest_contact_force,

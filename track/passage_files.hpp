@@ -42,11 +42,14 @@ struct PassageReport {
   std::string drawing = {};                 ///< of the vehicle, SVG (visu::Report::add_drawing)
   std::vector<visu::Table> tables =
       {};  ///< of the vehicle: axle loads, mass balance, modes, each with a caption
+  Eigen::VectorXd static_loads =
+      {};  ///< nw, of the contacts, or empty [N]: what dynamic load factors refer to
   std::optional<ProfileSamples> profile = {};  ///< of the rail under the train
 };
 
 /// Writes `results.h5` of a passage: every channel and what the report needs; docs/formats.md.
-/// @throws InputError if the file cannot be written, ModelError on a value that is not finite or an unsound scene
+/// @throws InputError if the file cannot be written, ModelError on a value that is not finite, an unsound scene, or
+///         static loads that are not one per contact
 void write_passage(const std::filesystem::path& path, const Passage& passage, const PassageReport& report,
                    const results::Provenance& provenance);
 

@@ -135,6 +135,13 @@ struct Run {
     const auto* const wheel = dynamic_cast<const track::WheelRailContact*>(&contact);
     return wheel ? wheel->static_load() : contact.force();
   }
+  Eigen::VectorXd static_loads() const {
+    const std::vector<const track::TrackContact*> contacts = system->contacts();
+    Eigen::VectorXd loads(static_cast<Eigen::Index>(contacts.size()));
+    for (std::size_t w = 0; w < contacts.size(); ++w)
+      loads[static_cast<Eigen::Index>(w)] = static_load(*contacts[w]);
+    return loads;
+  }
   double largest_load_factor() const {
     double largest = 0;
     const std::vector<const track::TrackContact*> contacts = system->contacts();
@@ -312,6 +319,7 @@ int run_one(const PassageProgram& program, const Options& options, const std::st
                               .summary = summary,
                               .drawing = vehicles::draw_vehicle(program.vehicle),
                               .tables = tabulate(program.vehicle),
+                              .static_loads = run.static_loads(),
                               .profile = sample_profile(program, run, options)};
   if (options.detail == "full") report.scene = make_scene(program, run);
   track::write_passage(options.output / "results.h5", run.passage, report, provenance);

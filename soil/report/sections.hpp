@@ -15,7 +15,7 @@ namespace easydyn::soil::report {
 /// Reference of velocity levels [m/s]: L_v = 20 log10(v_rms / reference).
 inline constexpr double level_reference = 5e-8;
 
-/// Step 1: contact forces, deflections, ballast reactions, vehicle accelerations, energies.
+/// Step 1: vehicle, rail profile, contact forces, deflections, ballast reactions, vehicle accelerations, energies.
 void add_track_section(visu::Report& report, const results::ResultReader& track);
 
 /// Step 2: velocities, spectra, decay with distance, indicators.

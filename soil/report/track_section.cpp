@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "easydyn/visu/table_json.hpp"
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
 
@@ -16,72 +17,220 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using results::ResultReader;
 
-constexpr Index most_curves = 6;  // that a reader can tell apart in one chart
+constexpr Index most_curves = 6;       // that a reader can tell apart in one chart
+constexpr std::size_t most_rows = 12;  // of a table that is not folded
+
+constexpr const char* none = "\u2013";
 
 std::vector<std::string> names_at(const ResultReader& file, const std::string& dataset) {
   return file.has(dataset) ? file.read_names(dataset) : std::vector<std::string>{};
 }
 
+void add_vehicle(visu::Report& report, const ResultReader& track) {
+  if (!track.has("/vehicle/drawing") && !track.has("/vehicle/tables")) return;
+  report.add_subsection("Vehicle");
+  if (track.has("/vehicle/drawing")) report.add_drawing(track.read_text("/vehicle/drawing"));
+  if (!track.has("/vehicle/tables")) return;
+  const std::string source = track.path().string() + ":/vehicle/tables";
+  for (visu::Table& table : visu::tables_from_json(track.read_text("/vehicle/tables"), source)) {
+    table.is_folded = table.rows.size() > most_rows;
+    report.add_table(std::move(table));
+  }
+}
+
+/// The indices of the largest of `values`, at most `count`, largest first.
+std::vector<Index> largest_of(const VectorXd& values, Index count) {
+  std::vector<Index> order(static_cast<std::size_t>(values.size()));
+  std::iota(order.begin(), order.end(), Index(0));
+  std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return values[i] > values[j]; });
+  order.resize(static_cast<std::size_t>(std::min(count, values.size())));
+  return order;
+}
+
+/// What the wheels felt, over every time step where the file has that.
+struct ContactExtremes {
+  std::vector<std::string> names;
+  bool has_static;                               ///< else the loads at the start stand for the static ones
+  VectorXd load, largest, smallest, deviation;   ///< [kN]; load: static one
+  VectorXd loss_count, loss_time, longest_loss;  ///< [1], [s], [s]; empty if the file has none
+
+  Index count() const { return load.size(); }
+  std::string load_name() const { return has_static ? "static" : "at the start"; }
+  bool has_losses() const { return loss_count.size() > 0; }
+
+  visu::Table table(const std::vector<Index>& wheelsets, const std::string& caption) const {
+    visu::Table table{{"wheelset", load_name() + " [kN]", "smallest [kN]", "largest [kN]",
+                       "standard deviation [kN]", "largest / " + load_name()},
+                      {},
+                      caption};
+    if (has_losses())
+      table.header.insert(table.header.end(), {"losses of contact", "longest [ms]", "in total [ms]"});
+    for (const Index w : wheelsets) {
+      std::vector<std::string> row = {name_of(names, w, "wheelset"), number_text(load(w)),
+                                      number_text(smallest(w)),      number_text(largest(w)),
+                                      number_text(deviation(w)),     number_text(largest(w) / load(w))};
+      if (has_losses()) {
+        const bool has_lost = loss_count(w) > 0;
+        row.push_back(fmt::format("{:.0f}", loss_count(w)));
+        row.push_back(has_lost ? number_text(1e3 * longest_loss(w)) : none);
+        row.push_back(has_lost ? number_text(1e3 * loss_time(w)) : none);
+      }
+      table.rows.push_back(std::move(row));
+    }
+    return table;
+  }
+};
+
 /// The tenth of a second about the largest contact force, of the wheelset that feels it.
-void add_largest_impact(visu::Report& report, const MatrixXd& force, const std::vector<std::string>& names,
-                        const VectorXd& time) {
+void add_largest_force(visu::Report& report, const MatrixXd& force, const ContactExtremes& e,
+                       const VectorXd& time) {
   Index row = 0, wheelset = 0;
-  if (force.maxCoeff(&row, &wheelset) < 1.2 * force(0, wheelset)) return;  // smooth: nothing to look into
+  if (force.maxCoeff(&row, &wheelset) < 1.2 * e.load(wheelset)) return;  // smooth: nothing to look into
   const double before = 0.02, length = 0.1;
   std::vector<Index> rows;
   for (Index i = 0; i < time.size(); ++i)
     if (time(i) >= time(row) - before && time(i) <= time(row) - before + length) rows.push_back(i);
-  report.add_chart({.title = fmt::format("The largest impact: {}", name_of(names, wheelset, "wheelset")),
+  const std::string name = name_of(e.names, wheelset, "wheelset");
+  report.add_chart({.title = "The largest contact force: " + name,
                     .x = {"time", "s"},
                     .y = {"contact force", "kN"},
-                    .series = {{name_of(names, wheelset, "wheelset"), time(rows), force(rows, wheelset)}},
+                    .series = {{name, time(rows), force(rows, wheelset)}},
                     .caption = "The same force in detail."});
+}
+
+ContactExtremes read_extremes(const ResultReader& track, const MatrixXd& force) {
+  ContactExtremes e;
+  e.names = names_at(track, "/contact/names");
+  e.has_static = track.has("/contact/static");
+  e.load = e.has_static ? VectorXd(1e-3 * track.read_vector("/contact/static"))
+                        : VectorXd(force.row(0).transpose());
+  e.deviation =
+      (force.rowwise() - force.colwise().mean()).array().square().colwise().mean().sqrt().transpose();
+  const bool has_extremes = track.has("/contact/largest") && track.has("/contact/smallest");
+  e.largest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/largest"))
+                           : VectorXd(force.colwise().maxCoeff().transpose());
+  e.smallest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/smallest"))
+                            : VectorXd(force.colwise().minCoeff().transpose());
+  if (track.has("/contact/loss_count") && track.has("/contact/loss_time") &&
+      track.has("/contact/longest_loss")) {
+    e.loss_count = track.read_vector("/contact/loss_count");
+    e.loss_time = track.read_vector("/contact/loss_time");
+    e.longest_loss = track.read_vector("/contact/longest_loss");
+  }
+  return e;
+}
+
+std::string losses_text(const ContactExtremes& e) {
+  if (!e.has_losses()) return "";
+  const auto wheels = (e.loss_count.array() > 0).count();
+  if (wheels == 0) return "No wheel left the rail.";
+  Index worst = 0;
+  const double longest = e.longest_loss.maxCoeff(&worst);
+  return fmt::format("{} of {} wheelsets left the rail, {:.0f} times in all, longest {} ms ({}).", wheels,
+                     e.count(), e.loss_count.sum(), number_text(1e3 * longest),
+                     name_of(e.names, worst, "wheelset"));
+}
+
+/// Every wheelset of a long train at a glance, and the worst ones by name.
+void add_long_train(visu::Report& report, const ContactExtremes& e, const std::vector<Index>& worst) {
+  const VectorXd number = VectorXd::LinSpaced(e.count(), 1, static_cast<double>(e.count()));
+  report.add_chart({.title = "Contact force along the train, both rails together",
+                    .x = {"wheelset, in the order of the table", ""},
+                    .y = {"contact force", "kN"},
+                    .series = {{e.load_name(), number, e.load, visu::Stroke::line_and_points},
+                               {"largest", number, e.largest, visu::Stroke::points},
+                               {"smallest", number, e.smallest, visu::Stroke::points}},
+                    .caption = "Extremes over the whole run."});
+  report.add_table(e.table(worst, "The wheelsets with the largest dynamic load factor"));
+  if (e.has_losses() && e.loss_time.maxCoeff() > 0) {
+    std::vector<Index> lost = largest_of(e.loss_time, most_curves);
+    std::erase_if(lost, [&](Index w) { return e.loss_count(w) == 0; });
+    report.add_table(e.table(lost, "The wheelsets that were longest without contact"));
+  }
 }
 
 void add_contact_forces(visu::Report& report, const ResultReader& track, const VectorXd& time) {
   if (!track.has("/contact/force")) return;
   const MatrixXd force = 1e-3 * track.read_matrix("/contact/force");
-  const auto names = names_at(track, "/contact/names");
+  const ContactExtremes e = read_extremes(track, force);
   report.add_subsection("Wheel/rail contact forces");
+  if (e.has_losses()) report.add_paragraph(losses_text(e));
 
   // Impacts are shorter than the output step: the extremes are those of every time step, where the file has them.
-  const bool has_extremes = track.has("/contact/largest") && track.has("/contact/smallest");
-  const VectorXd largest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/largest"))
-                                        : VectorXd(force.colwise().maxCoeff().transpose());
-  const VectorXd smallest = has_extremes ? VectorXd(1e-3 * track.read_vector("/contact/smallest"))
-                                         : VectorXd(force.colwise().minCoeff().transpose());
   const std::string sampling = fmt::format(" Sampled every {} ms: peaks between the samples are not drawn{}.",
                                            visu::short_number_text(1e3 * (time(1) - time(0))),
-                                           has_extremes ? "; the table has them" : "");
+                                           track.has("/contact/largest") ? "; the table has them" : "");
+  const bool is_long = e.count() > most_curves;
+  const std::vector<Index> worst = largest_of(e.largest.cwiseQuotient(e.load), most_curves);
 
   visu::Chart chart{.title = "Contact force of each wheelset, both rails together",
                     .x = {"time", "s"},
                     .y = {"contact force", "kN"},
                     .series = {}};
-  for (const Index w : spread(force.cols(), most_curves))
-    chart.series.push_back({name_of(names, w, "wheelset"), time, force.col(w)});
-  if (force.cols() > most_curves) {
+  if (is_long) {
+    chart.title = "Contact forces over time, both rails together";
     chart.bands = {{"all wheelsets", time, force.rowwise().minCoeff(), force.rowwise().maxCoeff()}};
-    chart.caption = fmt::format("{} of {} wheelsets; the grey band encloses all. Compression is positive.",
-                                chart.series.size(), force.cols());
+    for (const Index w : {worst[0], worst[1]})
+      chart.series.push_back({name_of(e.names, w, "wheelset"), time, force.col(w)});
+    chart.caption = fmt::format(
+        "The grey band encloses all {} wheelsets; drawn are the two with the largest dynamic load factor. "
+        "Compression is positive; 0 means that the wheel has left the rail.",
+        e.count());
   } else {
+    for (Index w = 0; w < e.count(); ++w)
+      chart.series.push_back({name_of(e.names, w, "wheelset"), time, force.col(w)});
     chart.caption = "Compression is positive; 0 means that the wheel has left the rail.";
   }
   chart.caption += sampling;
   report.add_chart(std::move(chart));
-  add_largest_impact(report, force, names, time);
+  add_largest_force(report, force, e, time);
 
-  visu::Table table{{"wheelset", "at the start [kN]", "smallest [kN]", "largest [kN]",
-                     "standard deviation [kN]", "largest / start"},
-                    {},
-                    "Contact forces"};
-  for (Index w = 0; w < force.cols(); ++w) {
-    const auto f = force.col(w);
-    const double deviation = std::sqrt((f.array() - f.mean()).square().mean());
-    table.rows.push_back({name_of(names, w, "wheelset"), number_text(f(0)), number_text(smallest(w)),
-                          number_text(largest(w)), number_text(deviation), number_text(largest(w) / f(0))});
+  if (is_long) add_long_train(report, e, worst);
+  visu::Table all =
+      e.table(spread(e.count(), e.count()), is_long ? "Contact forces of every wheelset" : "Contact forces");
+  all.is_folded = all.rows.size() > most_rows;
+  report.add_table(std::move(all));
+}
+
+/// The rail under the train, and what the wheelset with the largest dynamic load makes of it.
+void add_profile(visu::Report& report, const ResultReader& track) {
+  if (!track.has("/profile/x") || !track.has("/profile/height")) return;
+  const VectorXd x = track.read_vector("/profile/x"), height = 1e3 * track.read_vector("/profile/height");
+  const double mean = height.mean(), deviation = std::sqrt((height.array() - mean).square().mean());
+  report.add_subsection("Rail profile");
+  visu::Chart profile{.title = "Vertical profile of the unloaded rail",
+                      .x = {"x", "m"},
+                      .y = {"height", "mm"},
+                      .series = {{"profile", x, height}},
+                      .caption = fmt::format(
+                          "Upward is positive: {}. From {} to {} mm, standard deviation {} mm.",
+                          track.read_meaning("/profile/height").description, number_text(height.minCoeff()),
+                          number_text(height.maxCoeff()), number_text(deviation))};
+  if (!track.has("/contact/force") || !track.has("/contact/position")) {
+    report.add_chart(std::move(profile));
+    return;
   }
-  report.add_table(std::move(table));
+  const MatrixXd force = 1e-3 * track.read_matrix("/contact/force");
+  const MatrixXd position = track.read_matrix("/contact/position");
+  const ContactExtremes e = read_extremes(track, force);
+  const Index w = largest_of(e.largest.cwiseQuotient(e.load), 1).front();
+  std::vector<Index> rows;  // over the profile; a train that stands or turns back has no force over x
+  for (Index i = 0; i < position.rows(); ++i)
+    if (position(i, w) >= x(0) && position(i, w) <= x(x.size() - 1) &&
+        (rows.empty() || position(i, w) > position(rows.back(), w)))
+      rows.push_back(i);
+  if (rows.size() < 2) {
+    report.add_chart(std::move(profile));
+    return;
+  }
+  const std::string name = name_of(e.names, w, "wheelset");
+  const VectorXd place = position(rows, w), felt = force(rows, w);
+  report.add_charts({std::move(profile),
+                     {.title = "Contact force where it acts: " + name,
+                      .x = {"x", "m", visu::Scale::linear, x(0), x(x.size() - 1)},
+                      .y = {"contact force", "kN"},
+                      .series = {{name, place, felt}},
+                      .caption = "The wheelset with the largest dynamic load factor, over the same rail."}});
 }
 
 /// The sleeper that moves or bears most, of those in the middle half of the track.
@@ -160,7 +309,7 @@ void add_ballast_reactions(visu::Report& report, const ResultReader& track, cons
 }
 
 // The calmest bodies (those that carry people) and the most shaken ones (on the rail) need scales of their own.
-void add_vehicle(visu::Report& report, const ResultReader& track, const VectorXd& time) {
+void add_accelerations(visu::Report& report, const ResultReader& track, const VectorXd& time) {
   if (!track.has("/vehicle/acceleration")) return;
   const MatrixXd acceleration = track.read_matrix("/vehicle/acceleration");
   if (acceleration.cols() == 0) return;
@@ -177,11 +326,18 @@ void add_vehicle(visu::Report& report, const ResultReader& track, const VectorXd
       chart.series.push_back({name_of(names, by_peak[i], "body"), time, acceleration.col(by_peak[i])});
     return chart;
   };
-  report.add_subsection("Vehicle");
+  report.add_subsection("Accelerations of the vehicle");
   std::vector<visu::Chart> charts = {chart_of("Vertical acceleration, calmest bodies", 0)};
   if (by_peak.size() > curves)
     charts.push_back(chart_of("Vertical acceleration, most shaken bodies", by_peak.size() - curves));
   report.add_charts(std::move(charts));
+
+  visu::Table table{{"body", "largest [m/s²]", "rms [m/s²]"}, {}, "Vertical accelerations of every body"};
+  for (Index b = 0; b < acceleration.cols(); ++b)
+    table.rows.push_back({name_of(names, b, "body"), number_text(peak(b)),
+                          number_text(std::sqrt(acceleration.col(b).array().square().mean()))});
+  table.is_folded = table.rows.size() > most_rows;
+  report.add_table(std::move(table));
 }
 
 void add_energies(visu::Report& report, const ResultReader& track, const VectorXd& time) {
@@ -218,12 +374,14 @@ void add_track_section(visu::Report& report, const ResultReader& track) {
   report.add_section("Step 1: vehicle and track");
   const VectorXd time = track.read_vector("/time");
   const VectorXd sleepers = track.has("/sleeper/x") ? track.read_vector("/sleeper/x") : VectorXd();
+  add_vehicle(report, track);
+  add_profile(report, track);
   add_contact_forces(report, track, time);
   if (sleepers.size() > 0) {
     add_deflections(report, track, time, sleepers);
     add_ballast_reactions(report, track, time, sleepers);
   }
-  add_vehicle(report, track, time);
+  add_accelerations(report, track, time);
   add_energies(report, track, time);
 }
 

@@ -37,6 +37,21 @@ TEST_F(PredictionReport, HoldsBothStepsTheirMeetingAndTheirParameters) {
   }
 }
 
+TEST_F(PredictionReport, ShowsTheVehicleTheRailAndTheLossesOfContact) {
+  write_synthetic_results(folder_.path());
+  const std::string page = write();
+  EXPECT_THAT(page, HasSubstr("<svg role=\"img\" viewBox=\"0 0 100 20\"><title>Made-up tram</title>"));
+  EXPECT_LT(page.find("Made-up tram"), page.find("Made-up masses"));
+  EXPECT_LT(page.find("Made-up masses"), page.find("Rail profile"));
+  EXPECT_LT(page.find("Rail profile"), page.find("Wheel/rail contact forces"));
+  EXPECT_THAT(page, HasSubstr("made-up heights"));
+  EXPECT_THAT(
+      page,
+      HasSubstr("1 of 6 wheelsets left the rail, 2 times in all, longest 17.0 ms (middle gear, front)"));
+  for (const char* text : {"losses of contact", "longest [ms]", "in total [ms]", "largest / static"})
+    EXPECT_THAT(page, HasSubstr(text));
+}
+
 TEST_F(PredictionReport, HoldsOneStepIfThereIsOne) {
   write_synthetic_results(folder_.path());
   std::filesystem::remove(folder_ / "vibrations.h5");

@@ -13,6 +13,7 @@
 #include "easydyn/visu/json.hpp"
 #include "easydyn/visu/parameter_json.hpp"
 #include "easydyn/visu/scene.hpp"
+#include "easydyn/visu/table_json.hpp"
 
 namespace easydyn::testing {
 
@@ -157,6 +158,23 @@ void write_track(const std::filesystem::path& path, const Passage& p) {
                    {"front gear, driven", "front gear, trailing", "middle gear, front", "middle gear, rear",
                     "rear gear, trailing", "rear gear, driven"},
                    "wheelsets");
+  const VectorXd losses{{0, 0, 2, 0, 0, 0}};
+  file.write_vector("/contact/static", loads, {"N", "static load", "compression positive"});
+  file.write_vector("/contact/loss_count", losses, {"1", "losses", "count"});
+  file.write_vector("/contact/loss_time", VectorXd(0.011 * losses), {"s", "in total", "sum"});
+  file.write_vector("/contact/longest_loss", VectorXd(0.0085 * losses), {"s", "longest", "duration"});
+  file.write_text(
+      "/vehicle/drawing",
+      "<svg viewBox=\"0 0 100 20\"><title>Made-up tram</title><rect width=\"90\" height=\"9\"/></svg>",
+      "drawing");
+  file.write_text(
+      "/vehicle/tables",
+      visu::to_json(std::vector<visu::Table>{{{"part", "mass [t]"}, {{"bodies", "26"}}, "Made-up masses"}}),
+      "tables");
+  const VectorXd profile_x = VectorXd::LinSpaced(721, 0, 72);
+  file.write_vector("/profile/x", profile_x, {"m", "places", "x forward"});
+  file.write_vector("/profile/height", VectorXd(1e-3 * profile_x.array().sin()),
+                    {"m", "made-up heights", "upward"});
   file.write_vector("/sleeper/x", p.sleepers, {"m", "sleepers", "x forward"});
   file.write_matrix("/rail/deflection", p.rail, {"m", "rail", "downward"});
   file.write_matrix("/sleeper/displacement", p.sleeper, {"m", "sleeper", "downward"});
