@@ -58,8 +58,8 @@ if [[ $* == *--help* ]]; then echo "help of $(basename "$0")"; exit 0; fi
 if [[ -e $scratch/fail_program ]]; then exit "$(<"$scratch/fail_program")"; fi
 while (($# > 0)); do
   case $1 in
-    --output) mkdir -p "$2"; touch "$2/surface_loads.h5"; shift ;;
-    --output=*) mkdir -p "${1#*=}"; touch "${1#*=}/surface_loads.h5" ;;
+    --output) mkdir -p "$2"; [[ -e $scratch/sweep ]] || touch "$2/surface_loads.h5"; shift ;;
+    --output=*) mkdir -p "${1#*=}"; [[ -e $scratch/sweep ]] || touch "${1#*=}/surface_loads.h5" ;;
   esac
   shift
 done
@@ -135,6 +135,15 @@ run tram --help
 expect "help of the program" is "$out" "help of tram"
 expect "no soil after help" lacks "$log" "soil run"
 expect "an earlier report survives help" test -e results/tram/report.html
+
+# A sweep of speeds leaves no new loads: no ground, and the earlier report stays.
+touch -d '1 hour ago' results/tram/surface_loads.h5
+touch "$scratch/sweep"
+run tram --speed 30,40
+expect "a sweep succeeds" is "$code" 0
+expect "a sweep has no soil" lacks "$log" "soil run"
+expect "a sweep leaves the earlier report" test -e results/tram/report.html
+rm "$scratch/sweep"
 
 # Failing steps.
 echo 2 >"$scratch/fail_program"
