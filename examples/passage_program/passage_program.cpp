@@ -118,7 +118,7 @@ struct Run {
     passage_options.duration = (course.stop - course.start) / speed;
     passage_options.run_in = course.run_in / speed;
     passage_options.step = options.time_step;
-    const double output_step = std::clamp(0.02 * m / speed, 5e-4, 1e-3);  // 0.5 kHz at least
+    const double output_step = passage_options.duration > 6 * s ? 1e-3 : 5e-4;  // 0.5 kHz at least
     passage_options.output_step =
         std::max(1.0, std::round(output_step / options.time_step)) * options.time_step;
     passage_options.start_difference = std::min(2e-3, 0.05 * spacing / speed);
