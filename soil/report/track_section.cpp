@@ -225,12 +225,12 @@ void add_profile(visu::Report& report, const ResultReader& track) {
   }
   const std::string name = name_of(e.names, w, "wheelset");
   const VectorXd place = position(rows, w), felt = force(rows, w);
-  report.add_charts({std::move(profile),
-                     {.title = "Contact force where it acts: " + name,
-                      .x = {"x", "m", visu::Scale::linear, x(0), x(x.size() - 1)},
-                      .y = {"contact force", "kN"},
-                      .series = {{name, place, felt}},
-                      .caption = "The wheelset with the largest dynamic load factor, over the same rail."}});
+  report.add_chart(std::move(profile));
+  report.add_chart({.title = "Contact force where it acts: " + name,
+                    .x = {"x", "m", visu::Scale::linear, x(0), x(x.size() - 1)},
+                    .y = {"contact force", "kN"},
+                    .series = {{name, place, felt}},
+                    .caption = "The wheelset with the largest dynamic load factor, over the same rail."});
 }
 
 /// The sleeper that moves or bears most, of those in the middle half of the track.
