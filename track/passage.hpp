@@ -48,8 +48,9 @@ struct Passage {
   Eigen::VectorXd kinetic_energy, potential_energy;    ///< nt [J]
   Eigen::VectorXd dissipated_energy, supplied_energy;  ///< nt [J], since the start
   double static_ballast_reaction = 0;  ///< of all sleepers together, at rest at the place of the start [N]
-  double track_weight = 0;             ///< rails and sleeper per spacing, which holds the ballast down [N]
-  std::vector<std::string> warnings;   ///< where a result leaves the range of the model
+  double track_weight =
+      0;  ///< per spacing, above the springs of the reaction: rails, sleeper, slab, ballast mass [N]
+  std::vector<std::string> warnings;  ///< where a result leaves the range of the model
   PassageStepper::Statistics statistics;
   std::size_t memory = 0;  ///< of the results and of what solves the track [bytes]
 };

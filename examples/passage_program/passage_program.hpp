@@ -29,7 +29,8 @@ struct PassageProgram {
   // ---- where ----
   double loaded = 14;   ///< the ground is loaded from -loaded to loaded about x = 0 [m]
   double approach = 2;  ///< of the first wheel to the loaded part, and of the last one away from it [m]
-  double margin = 32;   ///< of track solved before and behind the wheels, the absorbing ends included [m]
+  /// Of track solved before and behind the wheels, the absorbing ends included [m]; 14 m more where wheels may lift off.
+  double margin = 32;
 
   /// Rayleigh speed of the upper layer of the site that the foundation stands for [m/s]; 0: unknown.
   double rayleigh_speed = 0;
