@@ -76,7 +76,8 @@ void passage_step(benchmark::State& state, Passage (*make)()) {
   state.counters["window_MB"] = 1e-6 * static_cast<double>(stepper.window().memory());
   const BandedCholesky factor = factorise(passage);
   Eigen::VectorXd x(factor.size());
-  const double step = median_time(300, [] {}, [&] { stepper.step(); }),
+  const double step = median_time(
+                   300, [] {}, [&] { stepper.step(); }),
                solve = median_time(
                    300, [&] { x.setOnes(); },
                    [&] {

@@ -77,8 +77,7 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const Pa
   if (p.foundation_displacement.size() > 0)
     file.write_matrix("/foundation/displacement", p.foundation_displacement,
                       {"m", "foundation u_f below each sleeper", down});
-  file.write_matrix("/ballast/reaction", p.ballast_reaction,
-                    {"N", "force of the ballast on the soil", down});
+  file.write_matrix("/ballast/reaction", p.ballast_reaction, {"N", "force of the ballast on the soil", down});
 
   file.write_names("/vehicle/names", p.coordinate_names, "coordinates of the vehicle");
   file.write_matrix("/vehicle/position", p.coordinates,
