@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "easydyn/error.hpp"
+#include "easydyn/nearest_name.hpp"
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "easydyn/error.hpp"
+#include "easydyn/nearest_name.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -29,25 +30,6 @@ std::string type_name(const toml::node& node) {
   }
 }
 
-// Optimal string alignment distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) {
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-      if (i == 0 || j == 0) {
-        d[i][j] = i + j;
-        continue;
-      }
-      d[i][j] =
-          std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
-    }
-  }
-  return d[a.size()][b.size()];
-}
-
 }  // namespace
 
 bool Range::contains(double value) const {
@@ -64,18 +46,6 @@ std::string Range::description() const {
     limits.push_back(fmt::format("{} {}", includes_high ? "<=" : "<", high));
   }
   return limits.empty() ? "finite" : fmt::format("{}", fmt::join(limits, " and "));
-}
-
-std::string find_nearest(std::string_view word, const std::vector<std::string>& known) {
-  std::string nearest;
-  std::size_t fewest = word.size() / 2 + 2;  // more edits than that: no resemblance
-  for (const std::string& candidate : known) {
-    if (const std::size_t edits = edit_distance(word, candidate); edits < fewest) {
-      fewest = edits;
-      nearest = candidate;
-    }
-  }
-  return nearest;
 }
 
 void TomlTable::refuse_other_keys(const std::vector<std::string>& known) const {

@@ -71,8 +71,4 @@ class TomlTable {
   std::reference_wrapper<const toml::table> table_;
 };
 
-/// The known word that needs the fewest insertions, deletions, replacements and swaps of neighbours to become
-/// `word`; empty if even that one shares little with it.
-std::string find_nearest(std::string_view word, const std::vector<std::string>& known);
-
 }  // namespace easydyn::soil

@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
-#include <vector>
 
 #include "easydyn/error.hpp"
 #include "easydyn/math/units.hpp"
+#include "easydyn/nearest_name.hpp"
 
 namespace easydyn::track {
 namespace {
@@ -24,22 +23,6 @@ const std::array<RailSection, 6> sections = {{
     {"46E3", 5.944e-3, 1.606e-5, 46.66, 210 * GPa, "F: STEM"},
     {"CN60", 7.745e-3, 3.217e-5, 60.64, 205.9 * GPa, "F: TTB-2D"},
 }};
-
-/// Number of insertions, deletions and replacements between two names (Levenshtein).
-size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 }  // namespace
 

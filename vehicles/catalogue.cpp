@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "easydyn/error.hpp"
 #include "easydyn/math/units.hpp"
+#include "easydyn/nearest_name.hpp"
 #include "vehicles/t2000_like.hpp"
 #include "vehicles/thalys_like.hpp"
 #include "vehicles/train.hpp"
@@ -35,22 +35,6 @@ RailVehicle ice3_car(bool is_light) {
        .primary_damping = {20 * kN * s / m, goicolea},
        .secondary_stiffness = {0.7 * MN / m, goicolea},
        .secondary_damping = {40 * kN * s / m, goicolea}});
-}
-
-/// Levenshtein's distance: single-letter edits that turn a into b.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
