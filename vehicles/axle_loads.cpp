@@ -83,7 +83,9 @@ AxleLoads compute_axle_loads(const RailVehicle& vehicle) {
   validate(vehicle);
   const int bodies = static_cast<int>(vehicle.bodies.size()), gears = static_cast<int>(vehicle.gears.size()),
             hinges = static_cast<int>(vehicle.hinges.size());
-  int motions = 2 * (bodies + gears);
+  int motions = 2 * bodies;  // bodies, then frames, then hubs
+  for (const RunningGear& gear : vehicle.gears) motions += gear.has_frame() ? 2 : 0;
+  int hub = motions;
   for (const RunningGear& gear : vehicle.gears)
     for (const WheelPair& pair : gear.wheel_pairs) motions += pair.resilient ? 1 : 0;
 
@@ -104,11 +106,10 @@ AxleLoads compute_axle_loads(const RailVehicle& vehicle) {
     statics.add_hinge(i, body_height(hinge.rear_body, hinge.x) - body_height(hinge.front_body, hinge.x));
   }
   // gears: secondary suspensions above the frame, wheel pairs below
-  int hub = 2 * (bodies + gears);
+  int frame = 2 * bodies;
   for (int g = 0; g < gears; ++g) {
     const RunningGear& gear = vehicle.gears[g];
-    const int frame = 2 * (bodies + g);
-    statics.add_weight(frame, gear.frame_mass);
+    if (gear.has_frame()) statics.add_weight(frame, gear.frame_mass);
     loads.secondary[g].resize(gear.secondaries.size());
     loads.wheel_pairs[g].resize(gear.wheel_pairs.size());
     for (size_t i = 0; i < gear.secondaries.size(); ++i) {
@@ -121,7 +122,8 @@ AxleLoads compute_axle_loads(const RailVehicle& vehicle) {
       WheelPairLoad& load = loads.wheel_pairs[g][i];
       load.name = pair.name;
       load.x = pair.x;
-      const Eigen::RowVectorXd above = statics.height_at(frame, pair.x - gear.x);
+      const Eigen::RowVectorXd above =
+          gear.has_frame() ? statics.height_at(frame, pair.x - gear.x) : body_height(gear.body, pair.x);
       if (!pair.resilient) {
         springs.push_back({pair.primary_stiffness, -above, &load.primary});
         continue;
@@ -131,6 +133,7 @@ AxleLoads compute_axle_loads(const RailVehicle& vehicle) {
       springs.push_back({pair.resilient->stiffness, -statics.height(hub), &load.resilient});
       ++hub;
     }
+    if (gear.has_frame()) frame += 2;
   }
   for (const Spring& spring : springs) statics.add_spring(spring.k, spring.shortening);
 

@@ -19,10 +19,12 @@ PlanarVehicle::PlanarVehicle(System& system, RailVehicle data)
   // Running gears: frame, then its wheel pairs, each with its suspensions.
   for (std::size_t g = 0; g < data_.gears.size(); ++g) {
     const RunningGear& gear = data_.gears[g];
-    Body& frame = system.body(gear.name, Inertia(gear.frame_mass, gear.frame_pitch_inertia));
-    frames_.push_back(&frame);
-    GearMotion motion{
-        &frame, system.coordinate(gear.name + ", heave"), system.coordinate(gear.name + ", pitch"), {}, {}};
+    GearMotion motion;
+    if (gear.has_frame()) {
+      frames_.push_back(&system.body(gear.name, Inertia(gear.frame_mass, gear.frame_pitch_inertia)));
+      motion.frame = {frames_.back(), system.coordinate(gear.name + ", heave"),
+                      system.coordinate(gear.name + ", pitch")};
+    }
     for (std::size_t s = 0; s < gear.secondaries.size(); ++s) {
       const SecondarySuspension& suspension = gear.secondaries[s];
       motion.secondaries.emplace_back(gear.name + ", secondary suspension", suspension.stiffness,
@@ -59,7 +61,9 @@ void PlanarVehicle::place(const Expr& x) {
   }
   for (std::size_t g = 0; g < gears_.size(); ++g) {
     GearMotion& gear = gears_[g];
-    *gear.frame = translate(x + double(data_.gears[g].x), 0, gear.heave) * rotate_y(gear.pitch);
+    if (gear.frame)
+      *gear.frame->body =
+          translate(x + double(data_.gears[g].x), 0, gear.frame->heave) * rotate_y(gear.frame->pitch);
     for (WheelPairMotion& wheel : gear.wheel_pairs) wheel.pair.place(x);
   }
 }
@@ -67,15 +71,17 @@ void PlanarVehicle::place(const Expr& x) {
 void PlanarVehicle::apply_suspensions() {
   for (std::size_t g = 0; g < gears_.size(); ++g) {
     GearMotion& gear = gears_[g];
-    const double gear_x = data_.gears[g].x;
+    const auto carried = static_cast<std::size_t>(gear.frame ? 0 : data_.body_index(data_.gears[g].body));
+    const Body& above = gear.frame ? *gear.frame->body : *car_bodies_[carried];
+    const double above_x = gear.frame ? data_.gears[g].x : data_.bodies[carried].x;
     for (std::size_t s = 0; s < gear.secondaries.size(); ++s) {
       const SecondarySuspension& suspension = data_.gears[g].secondaries[s];
       const auto body = static_cast<std::size_t>(data_.body_index(suspension.body));
-      gear.secondaries[s].apply(*gear.frame, {suspension.x - gear_x, 0, 0}, *car_bodies_[body],
+      gear.secondaries[s].apply(above, {suspension.x - above_x, 0, 0}, *car_bodies_[body],
                                 {suspension.x - data_.bodies[body].x, 0, 0});
     }
     for (WheelPairMotion& wheel : gear.wheel_pairs) {
-      wheel.primary.apply(wheel.pair.hub(), {0, 0, 0}, *gear.frame, {wheel.x - gear_x, 0, 0});
+      wheel.primary.apply(wheel.pair.hub(), {0, 0, 0}, above, {wheel.x - above_x, 0, 0});
       wheel.pair.apply_resilience();
     }
   }

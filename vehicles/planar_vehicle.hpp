@@ -39,7 +39,7 @@ class PlanarVehicle : public VehicleModel {
 
   /// Bodies in the order of the data sheet.
   const std::vector<Body*>& car_bodies() const { return car_bodies_; }
-  const std::vector<Body*>& frames() const { return frames_; }
+  const std::vector<Body*>& frames() const { return frames_; }  ///< of the gears that have one
 
  private:
   struct CarMotion {
@@ -52,9 +52,12 @@ class PlanarVehicle : public VehicleModel {
     VerticalSpringDamper primary;
     double x;
   };
-  struct GearMotion {
-    Body* frame;
+  struct FrameMotion {
+    Body* body;
     Coordinate heave, pitch;
+  };
+  struct GearMotion {
+    std::optional<FrameMotion> frame;
     std::vector<VerticalSpringDamper> secondaries;
     std::vector<WheelPairMotion> wheel_pairs;
   };

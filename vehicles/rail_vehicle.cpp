@@ -29,11 +29,22 @@ void validate(const WheelPair& pair, const std::string& object) {
 
 void validate(const RunningGear& gear, const RailVehicle& vehicle) {
   const std::string object = part(vehicle, "running gear", gear.name);
-  require_positive(object, "frame mass", gear.frame_mass, "kg");
-  require_positive(object, "frame pitch inertia", gear.frame_pitch_inertia, "kg m2");
+  const auto count = static_cast<double>(gear.secondaries.size());
+  if (gear.has_frame()) {
+    require_positive(object, "frame mass", gear.frame_mass, "kg");
+    require_positive(object, "frame pitch inertia", gear.frame_pitch_inertia, "kg m2");
+    require(count > 0, object, "secondary suspensions", count, "", ">= 1");
+  } else {
+    const std::string without =
+        fmt::format("0: its wheel pairs carry body \"{}\" without a frame", gear.body);
+    vehicle.body_index(gear.body);
+    require(gear.frame_mass == 0, object, "frame mass", gear.frame_mass, "kg", without);
+    require(gear.frame_pitch_inertia == 0, object, "frame pitch inertia", gear.frame_pitch_inertia, "kg m2",
+            without);
+    require(count == 0, object, "secondary suspensions", count, "", without);
+  }
   require_finite(object, "x", gear.x, "m");
   require_finite(object, "pivot x", gear.pivot_x, "m");
-  require(!gear.secondaries.empty(), object, "secondary suspensions", 0, "", ">= 1");
   require(!gear.wheel_pairs.empty(), object, "wheel pairs", 0, "", ">= 1");
   for (const SecondarySuspension& s : gear.secondaries) {
     vehicle.body_index(s.body);
@@ -133,9 +144,11 @@ std::vector<Parameter> parameters(const RailVehicle& vehicle) {
   }
   for (const Hinge& hinge : vehicle.hinges) add(hinge.name, "x", hinge.x, "m");
   for (const RunningGear& gear : vehicle.gears) {
-    add(gear.name, "frame mass", gear.frame_mass, "kg");
-    add(gear.name, "frame pitch inertia", gear.frame_pitch_inertia, "kg m2");
-    add(gear.name, "x of the frame", gear.x, "m");
+    if (gear.has_frame()) {
+      add(gear.name, "frame mass", gear.frame_mass, "kg");
+      add(gear.name, "frame pitch inertia", gear.frame_pitch_inertia, "kg m2");
+      add(gear.name, "x of the frame", gear.x, "m");
+    }
     add(gear.name, "x of the pivot", gear.pivot_x, "m");
     for (const SecondarySuspension& s : gear.secondaries) {
       const std::string object = gear.name + " to " + s.body;

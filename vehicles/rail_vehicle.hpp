@@ -30,7 +30,7 @@ struct Hinge {
   Sourced x;  ///< [m]
 };
 
-/// A vertical spring and damper between a running-gear frame and a body.
+/// A vertical spring and damper between the frame of a running gear and a body.
 struct SecondarySuspension {
   std::string body;
   Sourced x;          ///< [m]
@@ -51,22 +51,26 @@ struct WheelPair {
   Sourced x;                  ///< [m]
   Sourced mass;               ///< unsprung, with everything rigid on it (motors), tyres included [kg], > 0
   Sourced radius;             ///< [m], > 0
-  Sourced primary_stiffness;  ///< to the frame [N/m], > 0
+  Sourced primary_stiffness;  ///< to the frame, or to the body of a gear without frame [N/m], > 0
   Sourced primary_damping;    ///< [N s/m], >= 0
-  std::optional<ResilientWheel> resilient;
+  std::optional<ResilientWheel> resilient = {};
   int contacts = 2;                 ///< wheel/rail contacts side by side
   bool has_rubber_primary = false;  ///< rubber springs may be stiffer than coils; for unusual_values() alone
 };
 
-/// Bogie or running gear: a frame on one or more wheel pairs, under one or more bodies.
+/// Bogie or running gear: a frame on one or more wheel pairs, under one or more bodies; or, as below a two-axle wagon,
+/// wheel pairs without a frame, whose primary suspensions carry `body` itself.
 struct RunningGear {
   std::string name;
-  Sourced frame_mass;           ///< [kg], > 0
-  Sourced frame_pitch_inertia;  ///< [kg m2], > 0
-  Sourced x;                    ///< of the frame's centre of mass [m]
+  Sourced frame_mass = {};           ///< [kg], > 0; 0 without frame
+  Sourced frame_pitch_inertia = {};  ///< [kg m2], > 0; 0 without frame
+  Sourced x;                         ///< of the frame's centre of mass [m]; without frame for the reader only
   Sourced pivot_x;  ///< nominal centre of rotation under the body [m]; for the reader, not the statics
-  std::vector<SecondarySuspension> secondaries;
+  std::vector<SecondarySuspension> secondaries = {};  ///< at least one; none without frame
   std::vector<WheelPair> wheel_pairs;
+  std::string body = {};  ///< carried by the primary suspensions of a gear without frame; else empty
+
+  bool has_frame() const { return body.empty(); }
 };
 
 /// A rail vehicle (or train) in the vertical plane, as a data sheet.

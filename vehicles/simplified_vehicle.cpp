@@ -55,12 +55,13 @@ SimplifiedVehicle::SimplifiedVehicle(System& system, const RailVehicle& data, Ve
           column.load_above.emplace(pair.name + ", force above", 0, 0, 0, load.primary);
           break;
         case VehicleDetail::quarter:
-          add_mass("body share", mass, in_series(k_p, k_s), load.primary);
+          add_mass("body share", mass, gear.has_frame() ? in_series(k_p, k_s) : k_p, load.primary);
           break;
         case VehicleDetail::three_masses:
           require_positive(object, "body mass", mass - frame_mass, "kg");
-          add_mass("frame share", frame_mass, k_p, load.primary);
-          add_mass("body share", mass - frame_mass, k_s, gravity * (mass - frame_mass));
+          if (gear.has_frame()) add_mass("frame share", frame_mass, k_p, load.primary);
+          add_mass("body share", mass - frame_mass, gear.has_frame() ? k_s : k_p,
+                   gravity * (mass - frame_mass));
           break;
       }
       wheels_.push_back(column.pair.wheel());

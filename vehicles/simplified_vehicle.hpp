@@ -33,7 +33,8 @@ enum class VehicleDetail {
 ///
 ///   k = k_p k_s / (k_p + k_s),   d = (d_p k_s^2 + d_s k_p^2) / (k_p + k_s)^2
 ///
-/// where d is the limit at low frequencies of the two complex stiffnesses in series. Left out: pitch, and the
+/// where d is the limit at low frequencies of the two complex stiffnesses in series. Without a frame (`RunningGear::body`)
+/// the body's share stands on k_p, d_p in both. Left out: pitch, and the
 /// coupling of wheel pairs through frames, bodies and hinges; of `quarter` also the frame's own motion, of `wheel_pair`
 /// every motion above the hub.
 class SimplifiedVehicle : public VehicleModel {

@@ -23,6 +23,7 @@ RailVehicle placed(RailVehicle car, const std::string& prefix, double x) {
   }
   for (RunningGear& gear : car.gears) {
     rename(gear.name);
+    if (!gear.has_frame()) rename(gear.body);
     move(gear.x);
     move(gear.pivot_x);
     for (SecondarySuspension& secondary : gear.secondaries) {

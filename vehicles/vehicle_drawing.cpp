@@ -35,7 +35,8 @@ Span span_of(const CarBody& body) {
 }
 
 bool carries(const RunningGear& gear, const CarBody& body) {
-  return std::ranges::any_of(gear.secondaries, [&](const auto& s) { return s.body == body.name; });
+  return gear.body == body.name ||
+         std::ranges::any_of(gear.secondaries, [&](const auto& s) { return s.body == body.name; });
 }
 
 std::vector<Row> rows_of(const RailVehicle& vehicle, double row_length) {
@@ -274,6 +275,7 @@ class Drawing {
     }
     const double bar = std::max(0.16 * scale_, 4.0);
     const double frame_y = rail - (2 * highest * 0.5 + 0.28) * scale_ - bar;
+    const double seat = gear.has_frame() ? frame_y + bar : floor;  // of the primary suspensions
     // wheels behind the frame
     for (const WheelPair& pair : gear.wheel_pairs) {
       const double cx = px(pair.x), r = pair.radius * scale_, cy = rail - r;
@@ -283,12 +285,13 @@ class Drawing {
         canvas_.add(
             R"(<circle cx="{:.1f}" cy="{:.1f}" r="{:.1f}" fill="none" stroke="{}" stroke-width="1.6" stroke-dasharray="2 1.5"/>)",
             cx, cy, 0.72 * r, is_again ? pale : spring_line);
-      canvas_.spring(cx, frame_y + bar, cy, std::max(0.07 * scale_, 2.5), is_again ? pale : spring_line);
+      canvas_.spring(cx, seat, cy, std::max(0.07 * scale_, 2.5), is_again ? pale : spring_line);
       canvas_.add(R"(<circle cx="{:.1f}" cy="{:.1f}" r="2" fill="{}"/>)", cx, cy, dark);
     }
-    canvas_.add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" rx="1.5" fill="{}"/>)",
-                px(rear) - 0.12 * scale_, frame_y, (front - rear + 0.24) * scale_, bar,
-                is_again ? pale : frame_fill);
+    if (gear.has_frame())
+      canvas_.add(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" rx="1.5" fill="{}"/>)",
+                  px(rear) - 0.12 * scale_, frame_y, (front - rear + 0.24) * scale_, bar,
+                  is_again ? pale : frame_fill);
     // secondaries: those at one place side by side
     for (std::size_t i = 0; i < gear.secondaries.size(); ++i) {
       int same = 0, rank = 0;

@@ -41,20 +41,20 @@ void add_vehicle(visu::Scene& scene, const RailVehicle& vehicle, const VehicleMo
   }
 
   for (const RunningGear& gear : vehicle.gears) {
-    double axle_z = 0;
-    for (const WheelPair& pair : gear.wheel_pairs) axle_z = std::max(axle_z, double(pair.radius));
-    const double frame_z = heights.rail + axle_z + 0.12;
-    add_frame(scene, motion, gear.name, gear.x, frame_z);
-    double front = -1e9, rear = 1e9;
+    double axle_z = 0, front = -1e9, rear = 1e9;
     for (const WheelPair& pair : gear.wheel_pairs) {
+      axle_z = std::max(axle_z, double(pair.radius));
       front = std::max(front, double(pair.x));
       rear = std::min(rear, double(pair.x));
     }
-    scene.items.push_back({.name = gear.name,
-                           .frame = gear.name,
-                           .shape = visu::Shape::box,
-                           .size = {front - rear + 0.3, 0.6 * heights.gauge, 0.14},
-                           .colour = "#bb5566"});
+    if (gear.has_frame()) {
+      add_frame(scene, motion, gear.name, gear.x, heights.rail + axle_z + 0.12);
+      scene.items.push_back({.name = gear.name,
+                             .frame = gear.name,
+                             .shape = visu::Shape::box,
+                             .size = {front - rear + 0.3, 0.6 * heights.gauge, 0.14},
+                             .colour = "#bb5566"});
+    }
     for (const SecondarySuspension& s : gear.secondaries) {
       const auto body = static_cast<std::size_t>(vehicle.body_index(s.body));
       scene.links.push_back({.name = gear.name + ", secondary",
@@ -76,6 +76,21 @@ void add_vehicle(visu::Scene& scene, const RailVehicle& vehicle, const VehicleMo
                                .size = {double(pair.radius), 0.12, 0},
                                .colour = "#444444",
                                .offset = {Vector3d(0, side * heights.gauge, 0)}});
+      // The primary suspension, from the hub to the frame's underside or the body's floor.
+      visu::Anchor top{gear.name, {pair.x - gear.x, 0, -0.07}};
+      if (!gear.has_frame()) {
+        const auto body = static_cast<std::size_t>(vehicle.body_index(gear.body));
+        top = {gear.body, {pair.x - vehicle.bodies[body].x, 0, -heights.body_height / 2}};
+      }
+      for (double side : {-0.4, 0.4}) {
+        top.point.y() = side * heights.gauge;
+        scene.links.push_back({.name = pair.name + ", primary",
+                               .a = {hub, {0, side * heights.gauge, 0}},
+                               .b = top,
+                               .shape = visu::LinkShape::spring,
+                               .radius = 0.06,
+                               .colour = "#228833"});
+      }
     }
   }
 }

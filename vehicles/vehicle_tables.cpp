@@ -15,7 +15,7 @@ MassBalance compute_mass_balance(const RailVehicle& vehicle) {
     balance.bodies += body.mass;
   }
   for (const RunningGear& gear : vehicle.gears) {
-    ++balance.frame_count;
+    if (gear.has_frame()) ++balance.frame_count;
     balance.frames += gear.frame_mass;
     for (const WheelPair& pair : gear.wheel_pairs) {
       ++balance.wheel_pair_count;
