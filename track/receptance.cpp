@@ -59,6 +59,15 @@ Eigen::VectorXcd compute_sleeper_receptance(const TrackModel& track, double x_lo
   return compute_harmonic_response(track, track.rail_load(x_load, 1), frequencies).row(track.sleeper_dof(j));
 }
 
+Eigen::VectorXcd compute_receptance_between_sleepers(const TrackModel& track, int i, int j,
+                                                     std::span<const double> frequencies) {
+  for (const int sleeper : {i, j})
+    require(sleeper >= 0 && sleeper < track.sleepers(), track.data().label(), "sleeper", sleeper, "",
+            fmt::format("0 to {}", track.sleepers() - 1));
+  const Eigen::VectorXd load = Eigen::VectorXd::Unit(track.size(), track.sleeper_dof(i));
+  return compute_harmonic_response(track, load, frequencies).row(track.sleeper_dof(j));
+}
+
 Eigen::VectorXd compute_decay_rate(const TrackModel& track, double x_load,
                                    std::span<const double> frequencies) {
   const TrackData& data = track.data();

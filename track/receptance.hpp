@@ -20,9 +20,14 @@ Eigen::MatrixXcd compute_harmonic_response(const TrackModel& track, const Eigen:
 /// Receptance of the rail: deflection at x_response per unit harmonic force at x_load [m/N], downward.
 Eigen::VectorXcd compute_rail_receptance(const TrackModel& track, double x_load, double x_response,
                                          std::span<const double> frequencies);
-/// Displacement of sleeper j per unit harmonic force on the rail at x_load [m/N], downward.
+/// Displacement of sleeper j per unit harmonic force on the rail at x_load [m/N], downward; also the deflection of the
+/// rail there per unit force on the sleeper.
 Eigen::VectorXcd compute_sleeper_receptance(const TrackModel& track, double x_load, int j,
                                             std::span<const double> frequencies);
+/// Displacement of sleeper j per unit harmonic force on sleeper i [m/N], downward; i = j as a hammer measures it.
+/// @throws ModelError if the track has no such sleeper
+Eigen::VectorXcd compute_receptance_between_sleepers(const TrackModel& track, int i, int j,
+                                                     std::span<const double> frequencies);
 
 /// Decay rate of vibration along the rail, as it is measured (EN 15461): from the receptances A at places x_n ahead of
 /// a force at x_0,

@@ -1,5 +1,6 @@
 #include "track/receptance.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -60,6 +61,51 @@ TEST(Receptance, IsTheSpectrumOfATimeDomainRunUpToTheIntegratorsFrequencyShift) 
     EXPECT_LT(std::abs(rail[k] / F[k] / transfer[k] - 1.0), 1e-6);
     EXPECT_LT(std::abs(sleeper[k] / F[k] / to_sleeper[k] - 1.0), 1e-10);
   }
+}
+
+TEST(Receptance, OfASleeperBelowSoftPadsIsThatOfItsMassOnTheBallast) {
+  TrackData data = thalys_like_track();
+  data.foundation = RigidGround{};
+  data.pad_stiffness = 1;  // next to the ballast's 8e7 N/m
+  data.pad_damping = 0;
+  const TrackModel track(data, 100);
+  const std::vector<double> frequencies = {2, 60, 400};
+  const double k = data.ballast_stiffness, d = data.ballast_damping, m = data.sleeper_mass;
+  const auto own = compute_receptance_between_sleepers(track, 50, 50, frequencies);
+  const auto next = compute_receptance_between_sleepers(track, 50, 51, frequencies);
+  for (Eigen::Index n = 0; n < own.size(); ++n) {
+    const double w = 2 * pi * frequencies[static_cast<std::size_t>(n)];
+    const std::complex<double> exact = 1.0 / std::complex<double>(k - w * w * m, w * d);
+    // a pad over the ballast
+    EXPECT_LT(std::abs(own[n] - exact), 1e-6 * std::abs(exact));
+    EXPECT_LT(std::abs(next[n]), 1e-6 * std::abs(exact));
+  }
+}
+
+TEST(Receptance, BetweenSleepersAndRailIsReciprocal) {
+  const TrackModel track(thalys_like_track(), 100);
+  const std::vector<double> frequencies = {5, 50, 300};
+  const auto forward = compute_receptance_between_sleepers(track, 50, 53, frequencies),
+             backward = compute_receptance_between_sleepers(track, 53, 50, frequencies);
+  EXPECT_LT((forward - backward).norm(), 1e-10 * forward.norm());
+
+  const double x = track.sleeper_x(53) + 0.2;
+  const auto to_sleeper = compute_sleeper_receptance(track, x, 50, frequencies);
+  const Eigen::VectorXd on_sleeper = Eigen::VectorXd::Unit(track.size(), track.sleeper_dof(50));
+  const Eigen::MatrixXcd q = compute_harmonic_response(track, on_sleeper, frequencies);
+  const RailPoint point = track.rail_point(x);
+  for (Eigen::Index n = 0; n < to_sleeper.size(); ++n) {
+    std::complex<double> rail = 0;
+    for (int i = 0; i < 4; ++i) rail += point.shape.N[i] * q(point.dof[i], n);
+    EXPECT_LT(std::abs(rail - to_sleeper[n]), 1e-10 * std::abs(rail));
+  }
+}
+
+TEST(Receptance, RefusesASleeperThatTheTrackLacks) {
+  const TrackModel track(thalys_like_track(), 100);
+  EXPECT_THAT(
+      [&] { compute_receptance_between_sleepers(track, 0, 101, std::vector<double>{10}); },
+      testing::ThrowsMessage<easydyn::ModelError>(testing::HasSubstr("sleeper = 101, must be 0 to 100")));
 }
 
 }  // namespace
