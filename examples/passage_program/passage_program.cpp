@@ -59,7 +59,7 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   irregularity->capture_default_str()->check(CLI::IsMember(spectra));
   app.add_option("--seed", options.seed, "of the irregularity: equal seeds, equal rails")
       ->capture_default_str();
-  app.add_option("--profile", options.profile, "file of a measured profile: x [m], r [mm]")
+  app.add_option("--profile", options.profile, "measured profile: CSV with the header \"x [m], r [mm]\"")
       ->check(CLI::ExistingFile);
   app.add_option("--wheel-flat", options.wheel_flat,
                  "length of a rounded flat on every wheel pair, 0 to 200 [mm]")
