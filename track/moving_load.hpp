@@ -17,6 +17,7 @@ class MovingLoad : public TrackContact {
 
   Force force_after(double, double) const override { return {force_, 0, 0}; }
   const Body* body() const override { return nullptr; }
+  bool is_closed() const override { return true; }  // whatever its sign
 
  private:
   double load_;

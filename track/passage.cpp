@@ -160,11 +160,17 @@ void warn_of_uplift(Passage& p, const TrackData& data) {
                   p.sleeper_x[sleeper], -1e-3 * least, p.time[row], 1e-3 * p.track_weight));
 }
 
+using Report = std::function<void(long steps)>;  // steps done since the start of the run-in
+
 template <class Run>
 void run_with_kernel(System& system, const FlexibleTrack& track, const State& start, long run_in,
-                     const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
+                     const PassageOptions& options, const Report& report, PassageRecorder& recorder,
+                     Passage& passage, Run run) {
   Newmark integrator(system, start, {.step = options.step});
-  for (long i = 0; i < run_in; ++i) integrator.step();
+  for (long i = 1; i <= run_in; ++i) {
+    integrator.step();
+    report(i);
+  }
   EnergyBalance energy;
   const auto watch = [&] {
     energy = system.compute_energy(integrator.state());
@@ -192,10 +198,14 @@ void run_with_kernel(System& system, const FlexibleTrack& track, const State& st
 template <class Run>
 void run_with_window(System& system, const FlexibleTrack& track,
                      const std::vector<const TrackContact*>& contacts, const State& start, long run_in,
-                     const PassageOptions& options, PassageRecorder& recorder, Passage& passage, Run run) {
+                     const PassageOptions& options, const Report& report, PassageRecorder& recorder,
+                     Passage& passage, Run run) {
   PassageStepper stepper(system, track, {contacts.begin(), contacts.end()}, start,
                          {.step = options.step, .window = options.window});
-  for (long i = 0; i < run_in; ++i) stepper.step();
+  for (long i = 1; i <= run_in; ++i) {
+    stepper.step();
+    report(i);
+  }
   recorder.watch(stepper.t(), system.body_energy(), 0);
   const TrackWindow& window = stepper.window();
   run(
@@ -237,19 +247,23 @@ Passage compute_passage(System& system, const FlexibleTrack& track,
   recorder.passage().static_ballast_reaction =
       track.model().ballast_reactions(track.coordinates(at_rest.q), track.coordinates(at_rest.qd)).sum();
 
+  const double steps = static_cast<double>(run_in + outputs * every);
+  const Report report = [&](long done) {
+    if (progress && done % every == 0) progress(static_cast<double>(done) / steps);
+  };
   const auto run = [&](auto step_and_watch, auto record) {
     record();
     for (Index i = 1; i <= outputs; ++i) {
       for (Index k = 0; k < every; ++k) step_and_watch();
       record();
-      if (progress) progress(static_cast<double>(i) / static_cast<double>(outputs));
+      report(run_in + i * every);
     }
   };
   Passage& passage = recorder.passage();
   if (options.use_kernel)
-    run_with_kernel(system, track, start, run_in, options, recorder, passage, run);
+    run_with_kernel(system, track, start, run_in, options, report, recorder, passage, run);
   else
-    run_with_window(system, track, contacts, start, run_in, options, recorder, passage, run);
+    run_with_window(system, track, contacts, start, run_in, options, report, recorder, passage, run);
   warn_of_uplift(passage, track.model().data());
   return std::move(passage);
 }

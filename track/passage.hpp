@@ -63,7 +63,7 @@ struct Passage {
 /// for bodies and contacts, exactly as Newmark's method has it for the track.
 /// @param contacts  wheels and loads on the rail, in the order in which the system applies them; the ballast of hanging
 ///                  sleepers needs no mention
-/// @param progress  called with the fraction done
+/// @param progress  called with the fraction done, of the run-in too
 /// @throws ModelError on impossible options, SolverError if a step does not converge
 Passage compute_passage(System& system, const FlexibleTrack& track,
                         const std::vector<const TrackContact*>& contacts, const PassageOptions& options,

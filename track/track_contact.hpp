@@ -26,9 +26,9 @@ class TrackContact {
   virtual ~TrackContact() = default;
 
   const std::string& name() const { return name_; }
-  double force() const { return force_; }  ///< at the last evaluation [N]
-  double x() const { return x_; }          ///< at the last evaluation [m]
-  bool is_closed() const { return force_ > 0; }
+  double force() const { return force_; }                ///< at the last evaluation [N]
+  double x() const { return x_; }                        ///< at the last evaluation [m]
+  virtual bool is_closed() const { return force_ > 0; }  ///< at the last evaluation
 
   /// Where approach and rate are larger than at the last evaluation by `change` [m] and `rate_change` [m/s].
   virtual Force force_after(double change, double rate_change) const = 0;

@@ -320,6 +320,30 @@ TEST(PassageStepper, CarriesMovingLoads) {
   EXPECT_LT(largest_relative_difference(fast.supplied_energy, kernel.supplied_energy), 1e-8);
 }
 
+TEST(PassageStepper, TakesAMovingLoadThatPullsAsNoLossOfContactAndReportsTheRunInToo) {
+  class Load : public System {
+   public:
+    FlexibleTrack track{*this, TrackModel(thalys_like_track(), 120, -36)};
+    MovingLoad load{"load", -50e3};
+    void positions() override {}
+    void forces() override { load.apply(-10 + 50 * time().value(), 50, track, energy()); }
+  } system;
+  std::vector<double> fractions;
+  const Passage p = compute_passage(system, system.track, {&system.load},
+                                    {.duration = 0.1,
+                                     .step = 2e-4,
+                                     .run_in = 0.1,
+                                     .output_step = 1e-3,
+                                     .first_sleeper_x = -9,
+                                     .last_sleeper_x = 9},
+                                    [&](double fraction) { fractions.push_back(fraction); });
+  EXPECT_EQ(p.contact_losses.sum(), 0);
+  EXPECT_EQ(p.contact_force.maxCoeff(), -50e3);
+  ASSERT_EQ(fractions.size(), 200u);  // one per output step, half of them in the run-in
+  EXPECT_DOUBLE_EQ(fractions.front(), 0.005);
+  EXPECT_DOUBLE_EQ(fractions.back(), 1);
+}
+
 TEST(PassageStepper, SaysWhatItCannotDo) {
   const TrackModel model(thalys_like_track(), 200, -60);
   const auto flat = std::make_shared<FlatProfile>();
