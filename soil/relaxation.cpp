@@ -1,6 +1,7 @@
 #include "soil/relaxation.hpp"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 
@@ -9,10 +10,10 @@ namespace easydyn::soil {
 namespace {
 
 /// modulus / M_u at omega.
-std::complex<double> relative_modulus(const Relaxation& body, double omega) {
+std::complex<double> relative_modulus(const Relaxation& body, std::complex<double> omega) {
   std::complex<double> modulus = 1;
   for (int l = 0; l < body.rates.size(); ++l)
-    modulus -= body.weights(l) * body.rates(l) / std::complex<double>(body.rates(l), omega);
+    modulus -= body.weights(l) * body.rates(l) / (body.rates(l) + std::complex<double>(0, 1) * omega);
   return modulus;
 }
 
@@ -21,6 +22,10 @@ std::complex<double> relative_modulus(const Relaxation& body, double omega) {
 double Relaxation::compute_damping_ratio(double frequency) const {
   const std::complex<double> modulus = relative_modulus(*this, 2 * M_PI * frequency);
   return modulus.imag() / (2 * modulus.real());
+}
+
+std::complex<double> Relaxation::compute_modulus(std::complex<double> omega) const {
+  return unrelaxed * relative_modulus(*this, omega);
 }
 
 Relaxation fit_relaxation(double ratio, double lowest, double highest, double reference, int mechanisms) {
@@ -48,6 +53,13 @@ Relaxation fit_relaxation(double ratio, double lowest, double highest, double re
   for (int pass = 0; pass < 10; ++pass) body.weights *= ratio / body.compute_damping_ratio(reference);
   body.unrelaxed = 1 / relative_modulus(body, 2 * M_PI * reference).real();
   return body;
+}
+
+Relaxation fit_relaxation_of_band(double ratio, double highest_frequency, double reference) {
+  const double lowest = std::min(highest_frequency / 10, reference),
+               highest = std::max(highest_frequency, reference);
+  const int mechanisms = highest <= 10.001 * lowest ? 2 : 3;
+  return fit_relaxation(ratio, lowest, highest, reference, mechanisms);
 }
 
 }  // namespace easydyn::soil

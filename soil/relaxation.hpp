@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 
 namespace easydyn::soil {
 
@@ -19,6 +20,8 @@ struct Relaxation {
   double unrelaxed = 1;     ///< M_u / modulus at the reference frequency
 
   double compute_damping_ratio(double frequency) const;  ///< at `frequency` [Hz]
+  /// modulus / modulus given at the reference frequency, at a circular frequency with Im omega <= 0.
+  std::complex<double> compute_modulus(std::complex<double> omega) const;
 };
 
 /// Least-squares fit of `mechanisms` rates, evenly spaced on a logarithmic scale, over `lowest`..`highest`
@@ -26,5 +29,9 @@ struct Relaxation {
 /// @param ratio      damping ratio, 0 <= ratio < 0.2
 /// @param reference  frequency at which the modulus is given [Hz]; the ratio holds exactly there
 Relaxation fit_relaxation(double ratio, double lowest, double highest, double reference, int mechanisms);
+
+/// The body that stands for a constant damping ratio in a model that claims frequencies up to `highest_frequency`
+/// [Hz]: held from a tenth of it to it, and at `reference`; two mechanisms over a decade, three over more.
+Relaxation fit_relaxation_of_band(double ratio, double highest_frequency, double reference);
 
 }  // namespace easydyn::soil

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "soil/layered/layered_ground.hpp"
+#include "soil/site.hpp"
+#include "soil/surface_loads.hpp"
+
+namespace easydyn::soil {
+
+/// Impulse responses of a laterally homogeneous ground to one footprint: all that a train's vibration needs, since the
+/// response to any other footprint is the same, shifted. By symmetry only distances |dx|, |dy| from the footprint's
+/// centre are held.
+///
+/// Displacement u(t) [m] under a vertical force F(t), downward, is u = int h(t - s) F(s) ds. The h are band-limited:
+/// unchanged up to `roll_off` (1.25) times the highest frequency, nothing from 1.75 times it.
+struct Mobility {
+  double length = 0, width = 0;               ///< [m] of the footprint, along x and y
+  double highest_frequency = 0;               ///< [Hz]
+  double step = 0;                            ///< [s] of the samples
+  int before = 0;                             ///< samples before t = 0: the first one is at -before step
+  std::vector<std::array<double, 3>> places;  ///< |dx|, |dy|, z [m] of the receivers, z <= 0
+  std::vector<std::array<double, 2>> shifts;  ///< |dx|, |dy| [m] of the neighbouring footprints
+  Eigen::MatrixXd hx, hy, hz;                 ///< samples x places [m/(N s)], for dx, dy >= 0; z up
+  Eigen::MatrixXd mean;  ///< samples x shifts [m/(N s)]: mean downward displacement of a footprint there
+};
+
+/// Distances between the footprints of the loads and the receivers, and among the footprints, each once (to 1e-6 m).
+/// @throws ModelError if the footprints differ in size
+Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers);
+
+/// Time that impulse responses need to die out at the farthest of these distances [s].
+double estimate_window(const LayeredGround& ground, const Mobility& distances);
+
+/// Fills the responses, semi-analytically: frequency responses at w - i eta, e^(-eta window) = 1e-3, so that what
+/// still moves after the window, and folds back into it, is a thousandth.
+/// @param mobility  places, shifts and footprint are given
+/// @param window    [s]; 0: estimate_window()
+/// @param threads   0: one per core
+void update_mobility(const LayeredGround& ground, double highest_frequency, Mobility& mobility,
+                     double window = 0, int threads = 0);
+
+}  // namespace easydyn::soil

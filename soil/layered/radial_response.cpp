@@ -1,0 +1,319 @@
+#include "soil/layered/radial_response.hpp"
+
+#include <fmt/format.h>
+#include <math.h>  // j0, j1: not in <cmath>
+
+#include <algorithm>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <thread>
+
+#include "easydyn/error.hpp"
+#include "soil/layered/gauss_rule.hpp"
+#include "soil/layered/static_half_space.hpp"
+#include "soil/layered/wavenumber_response.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+constexpr double pi = std::numbers::pi;
+
+constexpr int points = 16;           // of a panel
+constexpr double panel_phase = 26;   // largest k r over a panel: 16 points integrate exp(i k r) to 1e-8
+constexpr double panel_reach = 3.3;  // largest length of a panel over the distance of the nearest pole: 1e-8
+constexpr double cut_phase = 72;     // k r where the integral begins to end
+
+// Smooth end of the integral: 1 up to k = K, 0 from 2 K.
+double compute_cut(double k_over_K) {
+  if (k_over_K <= 1) return 1;
+  if (k_over_K >= 2) return 0;
+  return 0.5 * std::erfc(4.2 * (2 * k_over_K - 3));
+}
+
+// Where poles and branch points lie: wavenumbers lowest ... highest, off the axis by `slope` times k.
+struct Singularities {
+  double lowest = std::numeric_limits<double>::infinity(), highest = 0, slope = 1;
+
+  // From a point of the real axis.
+  double compute_distance(double k) const {
+    if (highest == 0) return std::numeric_limits<double>::infinity();
+    const double nearest = std::clamp(k, lowest, highest);
+    return std::hypot(k - nearest, slope * nearest);
+  }
+};
+
+Singularities find_singularities(const LayeredGround& ground, const Eigen::VectorXcd& w, Index first,
+                                 Index last) {
+  Singularities s;
+  for (const Index i : {first, (first + last) / 2, last}) {
+    if (w(i) == 0.0) continue;
+    for (const LayerAtFrequency& layer : ground.compute_layers(w(i))) {
+      const Complex ks = std::sqrt(layer.ks2);
+      const double slope = std::min(1.0, std::abs(ks.imag()) / std::max(std::abs(ks.real()), 1e-300));
+      s.slope = std::min(s.slope, slope);
+      const double along = std::abs(ks) / std::hypot(1, slope);
+      s.lowest = std::min(s.lowest, along * std::sqrt(layer.speed_ratio2));
+      s.highest = std::max(s.highest, 1.2 * along);  // Rayleigh waves: c_R >= 0.874 c_S
+    }
+    if (!(s.slope > 1e-5)) {
+      throw ModelError(
+          fmt::format("layered ground: waves at {:.4g} Hz are undamped: give every layer a damping ratio "
+                      ">= 1e-5, or use a complex frequency (exponential window)",
+                      w(i).real() / (2 * pi)));
+    }
+  }
+  return s;
+}
+
+struct Nodes {
+  std::vector<double> k, weight;
+  double K1 = 0;  // end of the part where the waves are
+};
+
+// Panels from 0 to where the smallest distance no longer asks for more.
+Nodes make_nodes(const Singularities& s, double largest_distance, double depth, double smallest) {
+  static const GaussRule rule(points);
+  Nodes nodes;
+  const double reach = largest_distance + 2 * depth;  // waves down to the half-space and back
+  nodes.K1 = std::max(2 * s.highest, cut_phase / largest_distance);
+  const double end = 2 * std::max(nodes.K1, cut_phase / smallest);
+  double k = 0;
+  while (k < end) {
+    const double shortest_phase = k > 2 * nodes.K1 ? std::min(reach, 2 * cut_phase / k) : reach;
+    double width = panel_phase / shortest_phase;
+    for (int pass = 0; pass < 4; ++pass) {
+      width =
+          std::min(width, panel_reach * std::min({s.compute_distance(k), s.compute_distance(k + width / 2),
+                                                  s.compute_distance(k + width)}));
+    }
+    for (int i = 0; i < points; ++i) {
+      nodes.k.push_back(k + width / 2 * (1 + rule.points(i)));
+      nodes.weight.push_back(width / 2 * rule.weights(i));
+    }
+    k += width;
+  }
+  return nodes;
+}
+
+// Calls work(i) for i = 0 ... count - 1 on some threads; rethrows the first error.
+template <typename Work>
+void for_each_parallel(Index count, int threads, const Work& work) {
+  std::atomic<Index> next{0};
+  std::exception_ptr error;
+  std::mutex guard;
+  const auto serve = [&] {
+    try {
+      for (Index i = next++; i < count; i = next++) work(i);
+    } catch (...) {
+      const std::lock_guard lock(guard);
+      if (!error) error = std::current_exception();
+    }
+  };
+  std::vector<std::thread> others;
+  for (int t = 1; t < std::min<Index>(threads, count); ++t) others.emplace_back(serve);
+  serve();
+  for (std::thread& thread : others) thread.join();
+  if (error) std::rethrow_exception(error);
+}
+
+// The five transforms at one depth, nodes x (real, imaginary part at each frequency).
+struct Kernels {
+  Eigen::MatrixXd zz, xz, sum, difference, zx;
+};
+
+class Synthesis {
+ public:
+  Synthesis(const LayeredGround& ground, const RadialRequest& request, const RadialGrid& grid,
+            const Eigen::VectorXcd& w)
+      : ground_(ground), request_(request), grid_(grid), w_(w) {
+    threads_ = request.threads > 0 ? request.threads
+                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    responses_.resize(request.receiver_depths.size());
+    const double top_end = ground.layers().front().thickness;
+    for (std::size_t d = 0; d < responses_.size(); ++d) {
+      RadialResponse& response = responses_[d];
+      response.static_part = request.source_depth == 0 && request.receiver_depths[d] < top_end;
+      const Index rows = grid.nodes().size(), columns = 2 * w.size();
+      if (request.vertical) {
+        response.zz = Eigen::MatrixXd::Zero(rows, columns);
+        response.xz = response.zz;
+      }
+      if (request.horizontal) {
+        response.sum = Eigen::MatrixXd::Zero(rows, columns);
+        response.difference = response.sum;
+        response.zx = response.sum;
+      }
+    }
+  }
+
+  std::vector<RadialResponse> run() {
+    // Frequencies of one octave share the panels.
+    for (Index first = 0; first < w_.size();) {
+      Index last = first;
+      while (last + 1 < w_.size() && std::abs(w_(last + 1)) <= 2 * std::abs(w_(first))) ++last;
+      add_block(first, last);
+      first = last + 1;
+    }
+    return std::move(responses_);
+  }
+
+ private:
+  void add_block(Index first, Index last) {
+    const Nodes nodes = make_nodes(find_singularities(ground_, w_, first, last), grid_.largest(),
+                                   ground_.depth(), request_.smallest);
+    const auto count = static_cast<Index>(nodes.k.size());
+    const Index columns = 2 * (last - first + 1);
+    std::vector<Kernels> kernels(responses_.size());
+    for (Kernels& k : kernels) {
+      if (request_.vertical) {
+        k.zz.resize(count, columns);
+        k.xz.resize(count, columns);
+      }
+      if (request_.horizontal) {
+        k.sum.resize(count, columns);
+        k.difference.resize(count, columns);
+        k.zx.resize(count, columns);
+      }
+    }
+    for_each_parallel(last - first + 1, threads_,
+                      [&](Index i) { update_kernels(w_(first + i), nodes, 2 * i, kernels); });
+    constexpr Index rows = 24;
+    for_each_parallel((grid_.nodes().size() + rows - 1) / rows, threads_, [&](Index chunk) {
+      add_distances(nodes, kernels, rows * chunk, std::min(rows, grid_.nodes().size() - rows * chunk),
+                    2 * first, columns);
+    });
+  }
+
+  // Kernels at one frequency, with the weights of the quadrature.
+  void update_kernels(Complex w, const Nodes& nodes, Index column, std::vector<Kernels>& kernels) const {
+    const std::vector<LayerAtFrequency> layers = ground_.compute_layers(w);
+    WavenumberResponse response(layers, request_.source_depth, request_.receiver_depths);
+    std::vector<WavenumberCompliance> G(responses_.size());
+    const Complex mu = layers.front().mu;
+    const double nu = ground_.layers().front().poisson_ratio();
+    for (std::size_t n = 0; n < nodes.k.size(); ++n) {
+      const double k = nodes.k[n], scale = k * nodes.weight[n] / (2 * pi);
+      response.update(k, G.data());
+      for (std::size_t d = 0; d < G.size(); ++d) {
+        WavenumberCompliance& g = G[d];
+        if (responses_[d].static_part) {
+          const StaticCompliance s = compute_static_compliance(nu, k, request_.receiver_depths[d]);
+          g = {g.xx - s.xx / mu, g.xz - s.xz / mu, g.zx - s.zx / mu, g.zz - s.zz / mu, g.yy - s.yy / mu};
+        }
+        const auto put = [&](Eigen::MatrixXd& kernel, Complex value) {
+          kernel(static_cast<Index>(n), column) = scale * value.real();
+          kernel(static_cast<Index>(n), column + 1) = scale * value.imag();
+        };
+        if (request_.vertical) {
+          put(kernels[d].zz, g.zz);
+          put(kernels[d].xz, g.xz);
+        }
+        if (request_.horizontal) {
+          put(kernels[d].sum, 0.5 * (g.xx + g.yy));
+          put(kernels[d].difference, 0.5 * (g.xx - g.yy));
+          put(kernels[d].zx, g.zx);
+        }
+      }
+    }
+  }
+
+  // Sums over the nodes for some rows of the grid.
+  void add_distances(const Nodes& nodes, const std::vector<Kernels>& kernels, Index row, Index rows,
+                     Index column, Index columns) {
+    const double nearest = std::max(grid_.nodes()(row), request_.smallest);
+    const double end = 2 * std::max(nodes.K1, cut_phase / nearest);
+    const Index count = std::lower_bound(nodes.k.begin(), nodes.k.end(), end) - nodes.k.begin();
+    Eigen::MatrixXd J0(rows, count), J1(rows, count), J2;
+    if (request_.horizontal) J2.resize(rows, count);
+    for (Index i = 0; i < rows; ++i) {
+      const double r = grid_.nodes()(row + i);
+      const double K = std::max(nodes.K1, cut_phase / std::max(r, request_.smallest));
+      for (Index n = 0; n < count; ++n) {
+        const double k = nodes.k[static_cast<std::size_t>(n)], x = k * r, cut = compute_cut(k / K);
+        const bool ended = cut == 0;
+        const double first = ended ? 0 : ::j0(x), second = ended ? 0 : ::j1(x);
+        J0(i, n) = cut * first;
+        J1(i, n) = cut * second;
+        if (request_.horizontal) J2(i, n) = cut * (x > 1e-3 ? 2 * second / x - first : x * x / 8);
+      }
+    }
+    for (std::size_t d = 0; d < kernels.size(); ++d) {
+      RadialResponse& out = responses_[d];
+      const Kernels& in = kernels[d];
+      if (request_.vertical) {
+        out.zz.block(row, column, rows, columns).noalias() = J0 * in.zz.topRows(count);
+        out.xz.block(row, column, rows, columns).noalias() = J1 * in.xz.topRows(count);
+      }
+      if (request_.horizontal) {
+        out.sum.block(row, column, rows, columns).noalias() = J0 * in.sum.topRows(count);
+        out.difference.block(row, column, rows, columns).noalias() = J2 * in.difference.topRows(count);
+        out.zx.block(row, column, rows, columns).noalias() = J1 * in.zx.topRows(count);
+      }
+    }
+  }
+
+  const LayeredGround& ground_;
+  const RadialRequest& request_;
+  const RadialGrid& grid_;
+  const Eigen::VectorXcd& w_;
+  int threads_ = 1;
+  std::vector<RadialResponse> responses_;
+};
+
+}  // namespace
+
+RadialGrid::RadialGrid(double smallest, double largest, double largest_wavenumber) {
+  assert(smallest > 0 && largest > smallest);
+  const double longest =
+      largest_wavenumber > 0 ? 6 / largest_wavenumber : largest;  // 12 points to 6 rad: 1e-6
+  edges_ = {0};
+  while (edges_.back() < largest) {
+    const double r = edges_.back();
+    edges_.push_back(r + std::min(std::max(r, smallest), longest));
+  }
+  const auto panels = static_cast<Index>(edges_.size()) - 1;
+  nodes_.resize(panels * points_per_panel);
+  for (Index p = 0; p < panels; ++p) {
+    const double a = edges_[static_cast<std::size_t>(p)], b = edges_[static_cast<std::size_t>(p) + 1];
+    for (int i = 0; i < points_per_panel; ++i) {
+      nodes_(p * points_per_panel + i) =
+          (a + b) / 2 - (b - a) / 2 * std::cos(pi * (i + 0.5) / points_per_panel);
+    }
+  }
+}
+
+RadialGrid::Weights RadialGrid::compute_weights(double r) const {
+  const auto panel = std::clamp<Index>(std::upper_bound(edges_.begin(), edges_.end(), r) - edges_.begin() - 1,
+                                       0, static_cast<Index>(edges_.size()) - 2);
+  assert(r >= 0 && r <= edges_.back() * (1 + 1e-12));
+  Weights weights{panel * points_per_panel, {}};
+  // Barycentric formula for Chebyshev points of the first kind.
+  double sum = 0;
+  for (int i = 0; i < points_per_panel; ++i) {
+    const double distance = r - nodes_(weights.first + i);
+    if (distance == 0) {
+      weights.values.setZero();
+      weights.values(i) = 1;
+      return weights;
+    }
+    weights.values(i) = (i % 2 ? -1 : 1) * std::sin(pi * (i + 0.5) / points_per_panel) / distance;
+    sum += weights.values(i);
+  }
+  weights.values /= sum;
+  return weights;
+}
+
+std::vector<RadialResponse> compute_radial_responses(const LayeredGround& ground,
+                                                     const RadialRequest& request, const RadialGrid& grid,
+                                                     const Eigen::VectorXcd& w) {
+  return Synthesis(ground, request, grid, w).run();
+}
+
+}  // namespace easydyn::soil

@@ -1,0 +1,253 @@
+#include "soil/layered/superposition.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+#include <thread>
+#include <unsupported/Eigen/FFT>
+
+#include "easydyn/error.hpp"
+#include "soil/frequency_filter.hpp"
+#include "soil/load_history.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using Eigen::Index;
+constexpr double pi = std::numbers::pi;
+constexpr int refinement = 3;        // steps of the output in a step of the responses
+constexpr double unload_time = 0.5;  // [s] after the record, over which held loads go back to zero
+constexpr double tolerance = 1e-3;   // [m] to which distances are met
+
+// Columns of `signals`, from row `first` on a circle of `length` samples, as half spectra up to `count` lines.
+Eigen::MatrixXcd transform(const Eigen::MatrixXd& signals, Index before, Index length, Index count,
+                           int threads) {
+  Eigen::MatrixXcd spectra(count, signals.cols());
+  std::atomic<Index> next{0};
+  const auto serve = [&] {
+    Eigen::FFT<double> fft;
+    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    Eigen::VectorXd circle(length);
+    Eigen::VectorXcd spectrum(length / 2 + 1);
+    for (Index c = next++; c < signals.cols(); c = next++) {
+      circle.setZero();
+      circle.head(signals.rows() - before) = signals.col(c).tail(signals.rows() - before);
+      circle.tail(before) = signals.col(c).head(before);
+      fft.fwd(spectrum.data(), circle.data(), static_cast<int>(length));
+      spectra.col(c) = spectrum.head(count);
+    }
+  };
+  std::vector<std::thread> others;
+  for (int t = 1; t < threads; ++t) others.emplace_back(serve);
+  serve();
+  for (std::thread& thread : others) thread.join();
+  return spectra;
+}
+
+// The places of a mobility by their distance.
+template <std::size_t N>
+class Finder {
+ public:
+  explicit Finder(const std::vector<std::array<double, N>>& places) {
+    for (std::size_t i = 0; i < places.size(); ++i) index_[key(places[i])] = static_cast<Index>(i);
+  }
+  /// -1: there is none.
+  Index find(std::array<double, N> place) const {
+    const std::array<long, N> centre = key(place);
+    // Either side of the rounding.
+    const auto at = index_.find(centre);
+    if (at != index_.end()) return at->second;
+    std::array<long, N> near = centre;
+    for (near[0] = centre[0] - 1; near[0] <= centre[0] + 1; ++near[0]) {
+      for (near[1] = centre[1] - 1; near[1] <= centre[1] + 1; ++near[1]) {
+        if (const auto beside = index_.find(near); beside != index_.end()) return beside->second;
+      }
+    }
+    return -1;
+  }
+
+ private:
+  static std::array<long, N> key(const std::array<double, N>& place) {
+    std::array<long, N> rounded;
+    for (std::size_t i = 0; i < N; ++i) rounded[i] = std::lround(std::abs(place[i]) / tolerance);
+    return rounded;
+  }
+  std::map<std::array<long, N>, Index> index_;
+};
+
+// The loads at the step of the responses, tapered, from `start` on, back to zero after `end`.
+Eigen::MatrixXd sample_loads(const LoadHistory& history, const Eigen::VectorXd& taper, double start,
+                             double end, double step) {
+  const auto samples = static_cast<Index>(std::ceil((end + unload_time - start) / step)) + 1;
+  Eigen::MatrixXd force(samples, taper.size());
+  Eigen::VectorXd at;
+  for (Index i = 0; i < samples; ++i) {
+    const double t = start + step * static_cast<double>(i);
+    history.update_forces(t, at);
+    const double s = std::clamp((t - end) / unload_time, 0.0, 1.0);
+    force.row(i) = (1 - s * s * s * (10 - 15 * s + 6 * s * s)) * at.cwiseProduct(taper).transpose();
+  }
+  return force;
+}
+
+class Superposition {
+ public:
+  Superposition(const Mobility& mobility, const Site& site, const SurfaceLoads& loads, double preload_time,
+                int threads)
+      : mobility_(mobility), site_(site), loads_(loads) {
+    threads_ = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (mobility.highest_frequency < site.highest_frequency * (1 - 1e-9)) {
+      throw ModelError(
+          fmt::format("superposition: responses up to {} Hz, must be at least {} Hz, the highest frequency",
+                      mobility.highest_frequency, site.highest_frequency));
+    }
+    SurfaceLoads limited = loads;
+    const double step =
+        (loads.time(loads.time.size() - 1) - loads.time(0)) / static_cast<double>(loads.time.size() - 1);
+    limited.force = limit_band(loads.force, step, site.highest_frequency);
+    const LoadHistory history(limited, preload_time);
+    motion_.taper = compute_taper(loads.footprints, site.taper_length);
+
+    first_ = history.first_time();
+    duration_ = site.duration > 0 ? site.duration : history.last_time() - first_ + site.decay_time;
+    if (!(duration_ > 0) || !std::isfinite(duration_)) {
+      throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration_));
+    }
+    // As in the finite elements: a start below 1/1000 of the largest force does no harm as it is.
+    Eigen::VectorXd start;
+    history.update_forces(first_ + 1e-12, start);
+    const bool preloaded =
+        start.cwiseProduct(motion_.taper).cwiseAbs().maxCoeff() > 1e-3 * limited.force.cwiseAbs().maxCoeff();
+    before_ = preloaded ? static_cast<Index>(std::ceil(preload_time / mobility.step)) : 0;
+    const Eigen::MatrixXd force =
+        sample_loads(history, motion_.taper, first_ - mobility.step * static_cast<double>(before_),
+                     first_ + duration_, mobility.step);
+    length_ = compute_fast_length(force.rows() + mobility.hz.rows());
+    count_ =
+        std::min(length_ / 2, static_cast<Index>(std::ceil(1.75 * mobility.highest_frequency * mobility.step *
+                                                           static_cast<double>(length_))) +
+                                  1);
+    forces_ = transform(force, 0, length_, count_, threads_);
+  }
+
+  GroundMotion run() {
+    const auto outputs = static_cast<Index>(std::floor(duration_ / mobility_.step * refinement + 1e-9)) + 1;
+    motion_.time = Eigen::VectorXd::LinSpaced(
+        outputs, first_, first_ + static_cast<double>(outputs - 1) * mobility_.step / refinement);
+    add_receivers();
+    add_footprints();
+    return std::move(motion_);
+  }
+
+ private:
+  // Indices of the response from every footprint; throws where one is missing.
+  void add_receivers() {
+    const Finder<3> finder(mobility_.places);
+    const auto nr = static_cast<Index>(site_.receivers.size()), nl = forces_.cols();
+    const Eigen::MatrixXcd h[3] = {transform_responses(mobility_.hx), transform_responses(mobility_.hy),
+                                   transform_responses(mobility_.hz)};
+    Eigen::MatrixXcd sums[3];
+    for (Eigen::MatrixXcd& sum : sums) sum = Eigen::MatrixXcd::Zero(count_, nr);
+    for (Index r = 0; r < nr; ++r) {
+      const Receiver& receiver = site_.receivers[static_cast<std::size_t>(r)];
+      for (Index j = 0; j < nl; ++j) {
+        const Footprint& f = loads_.footprints[static_cast<std::size_t>(j)];
+        const double dx = receiver.position[0] - f.x, dy = receiver.position[1] - f.y;
+        const Index p = finder.find({dx, dy, receiver.position[2]});
+        if (p < 0) {
+          throw ModelError(
+              fmt::format("superposition: no response at ({:.6g}, {:.6g}, {:.6g}) m from a footprint, which "
+                          "receiver \"{}\" and footprint {} need",
+                          std::abs(dx), std::abs(dy), receiver.position[2], receiver.name, j + 1));
+        }
+        const double signs[3] = {dx < 0 ? -1.0 : 1.0, dy < 0 ? -1.0 : 1.0, 1.0};
+        for (int c = 0; c < 3; ++c)
+          sums[c].col(r).array() += signs[c] * h[c].col(p).array() * forces_.col(j).array();
+      }
+    }
+    const Eigen::VectorXcd rate = Eigen::VectorXcd::NullaryExpr(count_, [&](Index i) {
+      return std::complex<double>(
+          0, 2 * pi * static_cast<double>(i) / (static_cast<double>(length_) * mobility_.step));
+    });
+    Eigen::MatrixXd* const v[3] = {&motion_.vx, &motion_.vy, &motion_.vz};
+    for (int c = 0; c < 3; ++c) *v[c] = transform_back(rate.asDiagonal() * sums[c]);
+  }
+
+  void add_footprints() {
+    const Finder<2> finder(mobility_.shifts);
+    const Eigen::MatrixXcd h = transform_responses(mobility_.mean);
+    const Index nl = forces_.cols();
+    Eigen::MatrixXi index(nl, nl);
+    for (Index i = 0; i < nl; ++i) {
+      for (Index j = 0; j < nl; ++j) {
+        const Footprint &to = loads_.footprints[static_cast<std::size_t>(i)],
+                        &from = loads_.footprints[static_cast<std::size_t>(j)];
+        index(i, j) = static_cast<int>(finder.find({to.x - from.x, to.y - from.y}));
+        if (index(i, j) < 0) {
+          throw ModelError(
+              fmt::format("superposition: no response of a footprint at ({:.6g}, {:.6g}) m, which footprints "
+                          "{} and {} need",
+                          std::abs(to.x - from.x), std::abs(to.y - from.y), j + 1, i + 1));
+        }
+      }
+    }
+    Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count_, nl);
+    std::atomic<Index> next{0};
+    const auto serve = [&] {
+      for (Index i = next++; i < nl; i = next++) {
+        for (Index j = 0; j < nl; ++j)
+          sums.col(i).array() += h.col(index(i, j)).array() * forces_.col(j).array();
+      }
+    };
+    std::vector<std::thread> others;
+    for (int t = 1; t < threads_; ++t) others.emplace_back(serve);
+    serve();
+    for (std::thread& thread : others) thread.join();
+    motion_.footprint_displacement = transform_back(sums);
+  }
+
+  Eigen::MatrixXcd transform_responses(const Eigen::MatrixXd& h) const {
+    return mobility_.step * transform(h, mobility_.before, length_, count_, threads_);
+  }
+
+  // To the finer step of the output, without the samples before the loads.
+  Eigen::MatrixXd transform_back(const Eigen::MatrixXcd& spectra) const {
+    Eigen::FFT<double> fft;
+    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    const Index length = refinement * length_;
+    Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(length / 2 + 1);
+    Eigen::VectorXd signal(length);
+    Eigen::MatrixXd signals(motion_.time.size(), spectra.cols());
+    for (Index c = 0; c < spectra.cols(); ++c) {
+      padded.head(count_) = spectra.col(c);
+      padded(0) = padded(0).real();
+      fft.inv(signal.data(), padded.data(), static_cast<int>(length));
+      signals.col(c) = refinement * signal.segment(refinement * before_, signals.rows());
+    }
+    return signals;
+  }
+
+  const Mobility& mobility_;
+  const Site& site_;
+  const SurfaceLoads& loads_;
+  int threads_ = 1;
+  double first_ = 0, duration_ = 0;
+  Index before_ = 0, length_ = 0, count_ = 0;
+  Eigen::MatrixXcd forces_;
+  GroundMotion motion_;
+};
+
+}  // namespace
+
+GroundMotion superpose(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
+                       double preload_time, int threads) {
+  return Superposition(mobility, site, loads, preload_time, threads).run();
+}
+
+}  // namespace easydyn::soil

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "soil/layered/mobility.hpp"
+#include "soil/site.hpp"
+#include "soil/surface_loads.hpp"
+#include "soil/wave_solver.hpp"
+
+namespace easydyn::soil {
+
+/// Ground motion under many footprints from the responses to one:
+///
+///   u(x, t) = sum_j taper_j int h(x - x_j, t - s) F_j(s) ds
+///
+/// by FFT. The loads are treated as by the finite elements: limited by limit_band(), brought in over `preload_time`
+/// where they start away from zero, held after their end, faded out at both ends of the track by compute_taper(). The
+/// record begins with the loads and ends Site::decay_time after them (or lasts Site::duration); its step is 1 / (12
+/// highest_frequency). GroundMotion::energy stays empty.
+/// @throws ModelError if a distance is missing in the mobility, or loads and site do not fit it
+GroundMotion superpose(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
+                       double preload_time = 0.5, int threads = 0);
+
+}  // namespace easydyn::soil
