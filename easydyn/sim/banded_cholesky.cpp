@@ -10,7 +10,8 @@
 namespace easydyn {
 
 BandedCholesky::BandedCholesky(const SparseMatrix& A, int half_bandwidth, const std::string& name)
-    : n_(static_cast<int>(A.rows())), b_(half_bandwidth) {
+    : n_(static_cast<int>(A.rows())),
+      b_(std::max(1, half_bandwidth)) {  // a diagonal matrix too has its arrays
   Eigen::VectorXd D = Eigen::VectorXd::Zero(n_);
   rows_.setZero(n_, b_);
   for (int i = 0; i < n_; ++i)

@@ -271,7 +271,7 @@ TEST(BandedCholesky, SolvesSeveralRightHandSidesAtOnce) {
 
 TEST(BandedCholesky, SolvesForEveryBandwidthAndGivesPartsOfTheInverse) {
   constexpr int size = 53;
-  for (int b = 1; b <= 17; ++b) {
+  for (int b = 0; b <= 17; ++b) {
     MatrixXd A = MatrixXd::Zero(size, size);
     for (int i = 0; i < size; ++i)
       for (int k = 0; k <= b && i + k < size; ++k)
