@@ -32,6 +32,12 @@ Matrix mirror_both(const Matrix& m) {
   return mirrored;
 }
 
+// The root of a wave that decays outward, or, undamped, travels outward (Im > 0 with exp(i w t - b z)).
+Complex take_root(Complex square) {
+  const Complex root = std::sqrt(square);
+  return root.real() == 0 && root.imag() < 0 ? -root : root;
+}
+
 // (e^x - 1) / x
 Complex relative_growth(Complex x) {
   if (std::norm(x) > 0.25) return (std::exp(x) - 1.0) / x;
@@ -116,7 +122,7 @@ void WavenumberResponse::Column::update(double k) {
   for (Piece& piece : pieces) {
     const LayerAtFrequency& m = piece.material;
     const double r = m.speed_ratio2;
-    const Complex a = std::sqrt(k * k - m.ks2 * r), b = std::sqrt(k * k - m.ks2);
+    const Complex a = take_root(k * k - m.ks2 * r), b = take_root(k * k - m.ks2);
     piece.a = a;
     piece.b = b;
     piece.A << b, 1.0 / (k + b), k, -r / (k + a);
