@@ -3,9 +3,17 @@
 //   dof_per_second   3 x nodes x steps / s, all threads of the run
 //   dof_per_cpu_second   the same per second of processor time, waiting threads included
 //   bytes_per_dof    memory of the fields per degree of freedom
+//   roofline_fraction  dof_per_second over what the memory allows: the bandwidth of a triad with as many threads, measured
+//                    before and after each benchmark, over the bytes that a step must move (every field once in, once
+//                    out); 1 would be a kernel that costs nothing but the memory's time
+//   triad_bytes_per_second  that bandwidth, stores counted once
+//
+// On a shared machine compare roofline_fraction, not times.
 
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <chrono>
 #include <ctime>
 #include <thread>
 #include <vector>
@@ -20,6 +28,45 @@ using namespace easydyn::soil;
 /// Processor time of all threads [s]; on a shared machine it says more than the clock on the wall.
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
+/// a = b + s c with arrays far larger than any cache, shared out among threads.
+class Triad {
+ public:
+  static Triad& get() {
+    static Triad triad;
+    return triad;
+  }
+  void run(int threads) {
+    std::vector<std::thread> team;
+    for (int t = 0; t < threads; ++t) {
+      team.emplace_back([this, t, threads] {
+        for (std::size_t i = size_ * t / threads; i < size_ * (t + 1) / threads; ++i)
+          a_[i] = b_[i] + 3.0f * c_[i];
+      });
+    }
+    for (std::thread& thread : team) thread.join();
+    benchmark::ClobberMemory();
+  }
+  double bytes() const { return 3.0 * sizeof(float) * static_cast<double>(size_); }
+  /// Seconds of `rounds` rounds are added to `samples`.
+  void sample(int threads, int rounds, std::vector<double>& samples) {
+    for (int round = 0; round < rounds; ++round) {
+      const auto start = std::chrono::steady_clock::now();
+      run(threads);
+      samples.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    }
+  }
+
+ private:
+  static constexpr std::size_t size_ = std::size_t{1} << 25;
+  std::vector<float> a_ = std::vector<float>(size_, 0.0f), b_ = std::vector<float>(size_, 1.0f),
+                     c_ = std::vector<float>(size_, 2.0f);
+};
+
+double median(std::vector<double> samples) {
+  std::nth_element(samples.begin(), samples.begin() + samples.size() / 2, samples.end());
+  return samples[samples.size() / 2];
 }
 
 /// About 2 million degrees of freedom: 46 x (80 / degree) x (48 / degree) elements of 1.5 m.
@@ -49,13 +96,24 @@ void run_steps(benchmark::State& state, int degree, int mechanisms) {
   engine.set_time_step(1e-4);
   const int X = engine.nodes_x() / 2;
   for (int step = 0; step < 20; ++step) engine.advance({{X, 0, -1e3}}, false);
+  std::vector<double> triad_seconds;
+  Triad::get().sample(threads, 5, triad_seconds);
+  engine.advance({{X, 0, -1e3}}, false);
+  const auto begin = std::chrono::steady_clock::now();
   const double start = cpu_seconds();
   for (auto _ : state) engine.advance({{X, 0, -1e3}}, false);
+  const double used = cpu_seconds() - start;
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  Triad::get().sample(threads, 5, triad_seconds);
+  const double bandwidth = Triad::get().bytes() / median(triad_seconds);
   state.counters["dof_per_second"] =
       benchmark::Counter(static_cast<double>(lattice.dofs()), benchmark::Counter::kIsIterationInvariantRate);
   const double steps = static_cast<double>(state.iterations());
-  state.counters["dof_per_cpu_second"] =
-      steps * static_cast<double>(lattice.dofs()) / (cpu_seconds() - start);
+  state.counters["dof_per_cpu_second"] = steps * static_cast<double>(lattice.dofs()) / used;
+  const double moved = 2.0 * (2 + mechanisms) * sizeof(T);  // u, v and the memory variables, in and out
+  state.counters["roofline_fraction"] =
+      steps * static_cast<double>(lattice.dofs()) / seconds / (bandwidth / moved);
+  state.counters["triad_bytes_per_second"] = bandwidth;
   state.counters["bytes_per_dof"] =
       WaveEngine<T>::compute_memory(lattice, mechanisms) / static_cast<double>(lattice.dofs());
 }
@@ -67,21 +125,11 @@ void step_double(benchmark::State& state, int degree, int mechanisms) {
   run_steps<double>(state, degree, mechanisms);
 }
 
-/// a = b + s c with arrays far larger than any cache.
 void triad(benchmark::State& state) {
   const int threads = static_cast<int>(state.range(0));
-  const std::size_t size = std::size_t{1} << 26;
-  std::vector<float> a(size, 0.0f), b(size, 1.0f), c(size, 2.0f);
-  for (auto _ : state) {
-    std::vector<std::thread> team;
-    for (int t = 0; t < threads; ++t)
-      team.emplace_back([&, t] {
-        for (std::size_t i = size * t / threads; i < size * (t + 1) / threads; ++i) a[i] = b[i] + 3.0f * c[i];
-      });
-    for (std::thread& thread : team) thread.join();
-    benchmark::ClobberMemory();
-  }
-  state.SetBytesProcessed(static_cast<int64_t>(state.iterations() * size * 3 * sizeof(float)));
+  for (auto _ : state) Triad::get().run(threads);
+  state.counters["triad_bytes_per_second"] =
+      benchmark::Counter(Triad::get().bytes(), benchmark::Counter::kIsIterationInvariantRate);
 }
 
 void use_threads(benchmark::internal::Benchmark* benchmark) {

@@ -12,20 +12,29 @@ namespace easydyn::soil {
 /// How the lattice is made.
 struct LatticeOptions {
   int degree = 4;              ///< polynomial degree of the elements, 3..6
-  bool half_model = true;      ///< only y >= 0, symmetry plane y = 0
+  bool half_model = true;      ///< only y >= 0, plane y = 0
+  bool quarter_model = false;  ///< only x >= 0 and y >= 0: one footprint at the origin
   int sponge_elements = 8;     ///< damped elements on each outer side (three quarters of it below), >= 0
   double sponge_growth = 1.1;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
   int lanes = 16;              ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
 };
 
+/// The elements lo <= e < hi of each axis that are not of their layer's material.
+struct LatticeBlock {
+  std::array<int, 2> x{}, y{}, z{};
+  int material = 0;  ///< number of layers + index into Site::blocks; -1: open
+};
+
 /// Structured lattice of rectangular hexahedra with Gauss-Lobatto-Legendre nodes, graded in depth and toward
 /// the boundaries. Element (ex, ey, ez) is the box between lines ex, ex + 1 of `x`, and so on; layer
-/// interfaces lie on z lines, and the material depends on ez only.
+/// interfaces lie on z lines and faces of blocks on lines, and the material depends on ez only, but for blocks.
 struct Lattice {
   int degree = 4;
   bool half_model = true;
-  std::vector<double> x, y, z;  ///< element boundaries [m], ascending; z.back() = 0 (surface)
-  std::vector<int> layer;       ///< per z element (from the bottom): index into Site::layers
+  bool quarter_model = false;        ///< then half_model, too
+  std::vector<double> x, y, z;       ///< element boundaries [m], ascending; z.back() = 0 (surface)
+  std::vector<int> layer;            ///< per z element (from the bottom): index into Site::layers
+  std::vector<LatticeBlock> blocks;  ///< the later one holds where two overlap
   std::array<int, 2> sponge_x{}, sponge_y{}, sponge_z{};  ///< damped elements at the low and the high end
 
   int nx() const { return static_cast<int>(x.size()) - 1; }
@@ -46,13 +55,15 @@ struct Lattice {
 
 /// Lattice that holds all receivers and footprints, `Site::margin` away from the sponge, and resolves the
 /// shortest shear wave of each layer at Site::highest_frequency with Site::points_per_wavelength mean node
-/// distances. Horizontal sizes follow the slowest layer, vertical sizes each layer.
+/// distances. Horizontal sizes follow the slowest material, vertical sizes the slowest at each depth. The undamped
+/// ground holds the finite faces of the blocks, too; what reaches to infinity goes on through the sponge.
 /// @throws ModelError if the site or an option is out of range, naming it, its value and the accepted range
 Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
                      const LatticeOptions& options = {});
 
 /// Name and position of the receiver farthest from the origin, for messages; "none" without receivers.
 std::string describe_farthest_receiver(const Site& site);
+/// Name and speed of the slowest layer or block, for messages.
 std::string describe_slowest_layer(const Site& site);
 
 }  // namespace easydyn::soil

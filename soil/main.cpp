@@ -82,6 +82,8 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->type_name("MODEL");
   command.add_flag("--double", run.options.double_precision,
                    "Fields in double precision (slower, for checks)");
+  command.add_flag("--quarter-model", run.options.quarter_model,
+                   "Only x >= 0 and y >= 0 (one load, at the origin)");
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
 }

@@ -28,6 +28,29 @@ void add_site(std::vector<Parameter>& rows, const Site& site) {
     rows.push_back({group, "compression wave speed", layer.cp, "m/s", layer.source});
     rows.push_back({group, "damping ratio", layer.damping, "1", layer.source});
   }
+  for (std::size_t i = 0; i < site.blocks.size(); ++i) {
+    const Block& block = site.blocks[i];
+    const Layer& material = block.material;
+    const std::string group = fmt::format("block {}{}{}{}", i + 1, block.name.empty() ? "" : ": ", block.name,
+                                          block.mirrored ? ", mirrored about y = 0" : "");
+    const char* const axes[3] = {"x", "y", "z"};
+    const std::array<double, 2>* const ranges[3] = {&block.x, &block.y, &block.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      const char* const ends[2] = {" from", " to"};
+      for (int end = 0; end < 2; ++end) {
+        if (std::isfinite((*ranges[axis])[end])) {
+          rows.push_back(
+              {group, std::string(axes[axis]) + ends[end], (*ranges[axis])[end], "m", material.source});
+        }
+      }
+    }
+    rows.push_back({group, "open (0 no, 1 yes)", block.open ? 1.0 : 0.0, "1", material.source});
+    if (block.open) continue;
+    rows.push_back({group, "density", material.density, "kg/m3", material.source});
+    rows.push_back({group, "shear wave speed", material.cs, "m/s", material.source});
+    rows.push_back({group, "compression wave speed", material.cp, "m/s", material.source});
+    rows.push_back({group, "damping ratio", material.damping, "1", material.source});
+  }
 }
 
 template <typename T>
@@ -70,6 +93,8 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
   add("solver", "precision of the fields", "bit", options.double_precision ? 64 : 32,
       standard.double_precision ? 64 : 32);
   add("solver", "half model, y >= 0 (0 no, 1 yes)", "1", options.half_model, standard.half_model);
+  add("solver", "quarter model, x >= 0 and y >= 0 (0 no, 1 yes)", "1", options.quarter_model,
+      standard.quarter_model);
   add("boundary", "dashpots and far-field springs on the outer faces (0 no, 1 yes)", "1", options.dashpots,
       standard.dashpots);
 }
@@ -174,7 +199,10 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
              loads.footprints.size() == 1 ? "" : "s", loads.time(0), loads.time(loads.time.size() - 1));
   fmt::print(out, "mesh      {} x {} x {} elements of degree {}{}, {:.2f} million degrees of freedom\n",
              lattice.nx(), lattice.ny(), lattice.nz(), lattice.degree,
-             lattice.half_model ? " (half model, y >= 0)" : "", static_cast<double>(summary.dofs) / 1e6);
+             lattice.quarter_model ? " (quarter model, x >= 0 and y >= 0)"
+             : lattice.half_model  ? " (half model, y >= 0)"
+                                   : "",
+             static_cast<double>(summary.dofs) / 1e6);
   fmt::print(out,
              "          {:.1f} m x {:.1f} m x {:.1f} m, of which {:.1f} m x {:.1f} m x {:.1f} m undamped\n",
              size(lattice.x), size(lattice.y), size(lattice.z), inside(lattice.interior_x()),

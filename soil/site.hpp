@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -23,6 +24,19 @@ struct Layer {
   double poisson_ratio() const { return 0.5 * (cp * cp - 2 * cs * cs) / (cp * cp - cs * cs); }
 };
 
+/// A box of the ground, its faces along the axes, that is of another material or open (air): a trench, a filled
+/// trench, a stiff inclusion. An embankment is a first layer of its material with open blocks beside it.
+struct Block {
+  std::string name;
+  std::array<double, 2> x{
+      -std::numeric_limits<double>::infinity(),
+      std::numeric_limits<double>::infinity()};  ///< [m] infinite: to the edge of the model
+  std::array<double, 2> y = x, z{};              ///< [m]; z finite and <= 0
+  bool open = false;                             ///< air: `material` is not used
+  bool mirrored = false;                         ///< its mirror image about y = 0 as well
+  Layer material;                                ///< but for its thickness
+};
+
 /// A point where the ground motion is wanted; z <= 0 (0 = surface).
 struct Receiver {
   std::string name;
@@ -33,6 +47,7 @@ struct Receiver {
 struct Site {
   std::string name;
   std::vector<Layer> layers;  ///< at least one; the last is the half-space
+  std::vector<Block> blocks;  ///< where two overlap, the later one holds
   std::vector<Receiver> receivers;
   double highest_frequency = 50;       ///< [Hz]; the mesh resolves it, nothing above it is claimed
   double damping_frequency = 20;       ///< [Hz] at which Layer::damping, cs and cp hold

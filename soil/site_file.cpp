@@ -105,6 +105,46 @@ Layer read_layer(TomlTable& table, bool is_half_space) {
   return layer;
 }
 
+Block read_block(TomlTable& table) {
+  table.refuse_other_keys(
+      {"name", "x", "y", "z", "open", "mirrored", "density", "cs", "cp", "nu", "E", "damping", "source"});
+  Block block;
+  block.name = table.text("name", "");
+  if (!block.name.empty()) {
+    table.set_object(fmt::format("block \"{}\"", block.name));
+  }
+  if (table.has("x")) block.x = table.interval("x", "m", true);
+  if (table.has("y")) block.y = table.interval("y", "m", true);
+  block.z = table.interval("z", "m", false);
+  if (block.z[1] > 0) {
+    table.fail("z",
+               fmt::format("z = {}..{} m, must be <= 0 (0 is the surface; an embankment is a first layer "
+                           "with open blocks beside it)",
+                           block.z[0], block.z[1]));
+  }
+  block.mirrored = table.flag("mirrored", false);
+  if (block.mirrored && block.y[0] < 0 && block.y[1] > 0) {
+    table.fail("mirrored",
+               fmt::format("y = {}..{} m contains y = 0, must be on one side of it to be mirrored",
+                           block.y[0], block.y[1]));
+  }
+  block.open = table.flag("open", false);
+  block.material.name = block.name;
+  block.material.source = table.text("source", "");
+  if (block.open) {
+    for (const char* key : {"density", "cs", "cp", "nu", "E", "damping"}) {
+      if (table.has(key)) {
+        table.fail(key, fmt::format("both open = true and {} are given, must be one of them", key));
+      }
+    }
+    return block;
+  }
+  block.material.density = table.number("density", "kg/m3", positive);
+  read_stiffness(table, block.material);
+  block.material.damping = table.number("damping", "", {.low = 0, .high = 0.2, .includes_high = false});
+  return block;
+}
+
 Receiver read_receiver(TomlTable& table) {
   table.refuse_other_keys({"name", "position", "distance", "source"});
   Receiver receiver;
@@ -164,7 +204,7 @@ Site read_site(const std::filesystem::path& path) {
   site.text = read_text_file(path);
   const toml::table parsed = parse(site.text, path);
   const TomlTable root(path, "", parsed);
-  root.refuse_other_keys({"name", "source", "layer", "receiver", "solver", "loads"});
+  root.refuse_other_keys({"name", "source", "layer", "block", "receiver", "solver", "loads"});
   site.name = root.text("name", path.stem().string());
   root.text("source", "");
 
@@ -174,6 +214,10 @@ Site read_site(const std::filesystem::path& path) {
   }
   for (TomlTable& table : layers) {
     site.layers.push_back(read_layer(table, &table == &layers.back()));
+  }
+
+  for (TomlTable& table : root.tables("block")) {
+    site.blocks.push_back(read_block(table));
   }
 
   std::vector<TomlTable> receivers = root.tables("receiver");

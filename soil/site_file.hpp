@@ -20,6 +20,14 @@ namespace easydyn::soil {
 ///     nu = 0.33                               # Poisson ratio, 0 to 0.49, also where it follows from cp
 ///     # E = 1.1e8                             # [Pa] with nu, in place of cs; cs, cp and E hold at
 ///                                             # solver.damping_frequency
+///     [[block]]                               # optional: a box of other material, or of air
+///     name = "trench"                         # optional
+///     x = [-10, 10]                           # [m] from, to; inf allowed; without x or y: through the model
+///     y = [5, 6]
+///     z = [-4, 0]                             # [m] at most 0
+///     open = true                             # air; without it density, damping and stiffness as in a layer
+///     mirrored = true                         # its mirror image about y = 0 as well: the half model asks for
+///                                             # it unless the block lies as -y..y
 ///     [[receiver]]
 ///     name = "8 m"                            # a name of its own
 ///     distance = 8                            # [m] from the track's axis: (0, 8, 0)

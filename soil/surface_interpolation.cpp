@@ -52,7 +52,8 @@ std::vector<LineWeight> interpolate_line(const GllRule& rule, const std::vector<
 
 FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
                                            std::size_t number) {
-  const double x0 = footprint.x - footprint.length / 2, x1 = footprint.x + footprint.length / 2;
+  double x0 = footprint.x - footprint.length / 2;
+  const double x1 = footprint.x + footprint.length / 2;
   double y0 = footprint.y - footprint.width / 2;
   const double y1 = footprint.y + footprint.width / 2;
   if (lattice.half_model) {
@@ -62,6 +63,12 @@ FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footpri
                       "full model, option --full-model)",
                       number, footprint.y));
     y0 = 0;
+  }
+  if (lattice.quarter_model) {
+    if (!(std::abs(footprint.x) < 1e-9))
+      throw ModelError(
+          fmt::format("footprint {}: x = {} m, must be 0 in the quarter model", number, footprint.x));
+    x0 = 0;
   }
   const auto check = [&](const char* axis, double low, double high, std::array<double, 2> range) {
     if (!(low >= range[0] - 1e-9 && high <= range[1] + 1e-9))
@@ -89,7 +96,11 @@ ReceiverWeights compute_receiver_weights(const Lattice& lattice, const Receiver&
   ReceiverWeights result;
   if (lattice.half_model && y < 0) {
     y = -y;
-    result.mirrored = true;
+    result.mirrored_y = true;
+  }
+  if (lattice.quarter_model && x < 0) {
+    x = -x;
+    result.mirrored_x = true;
   }
   const auto check = [&](const char* axis, double value, std::array<double, 2> range) {
     if (!(value >= range[0] - 1e-9 && value <= range[1] + 1e-9))

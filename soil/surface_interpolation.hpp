@@ -13,8 +13,8 @@ struct NodeWeight {
 };
 
 /// Uniform unit force over a footprint, integrated exactly with the shape functions: the nodal forces, which
-/// are at once the weights of the mean displacement over the footprint. In the half model the part y >= 0
-/// only; the nodal forces then add up to 1/2 (`force`) and the mean weights to 1 (`mean`).
+/// are at once the weights of the mean displacement over the footprint. In the half and the quarter model the
+/// part inside only; the nodal forces then add up to 1/2 or 1/4 (`force`) and the mean weights to 1 (`mean`).
 struct FootprintWeights {
   std::vector<NodeWeight> force, mean;
 };
@@ -23,11 +23,12 @@ struct FootprintWeights {
 FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
                                            std::size_t number);
 
-/// Shape functions at a receiver: weights that add up to 1. In the half model a receiver at y < 0 takes the
-/// values of its mirror image (`mirrored`: v_y changes sign).
+/// Shape functions at a receiver: weights that add up to 1. In the half model a receiver at y < 0, in the quarter
+/// model also one at x < 0, takes the values of its mirror image: symmetric motion changes the sign of the
+/// component across the plane, antisymmetric motion that of the others.
 struct ReceiverWeights {
   std::vector<NodeWeight> nodes;
-  bool mirrored = false;
+  bool mirrored_x = false, mirrored_y = false;
 };
 
 /// @throws ModelError if the receiver lies outside the undamped ground, naming it and the accepted range

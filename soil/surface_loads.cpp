@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "easydyn/error.hpp"
@@ -56,6 +57,8 @@ std::string find_fault(const SurfaceLoads& loads) {
   return {};
 }
 
+const std::vector<std::string> direction_names{"x", "y", "down"};
+
 }  // namespace
 
 void write_surface_loads(const std::filesystem::path& path, const SurfaceLoads& loads,
@@ -70,10 +73,18 @@ void write_surface_loads(const std::filesystem::path& path, const SurfaceLoads& 
     position.row(j) << footprint.x, footprint.y;
     size.row(j) << footprint.length, footprint.width;
   }
+  std::vector<std::string> directions;
+  bool has_horizontal = false;
+  for (const Footprint& footprint : loads.footprints) {
+    directions.push_back(direction_names[static_cast<std::size_t>(footprint.direction)]);
+    has_horizontal = has_horizontal || footprint.direction != LoadDirection::down;
+  }
   results::ResultFile file(path, provenance);
   file.write_vector("/time", loads.time, {.units = "s", .description = "time", .frame = "scalar"});
   file.write_matrix("/force", loads.force,
-                    {.units = "N", .description = "force on each footprint", .frame = "positive downward"});
+                    {.units = "N",
+                     .description = "force on each footprint",
+                     .frame = has_horizontal ? "positive along /direction" : "positive downward"});
   file.write_matrix("/position", position,
                     {.units = "m",
                      .description = "x, y of the centre of each footprint",
@@ -82,6 +93,9 @@ void write_surface_loads(const std::filesystem::path& path, const SurfaceLoads& 
                     {.units = "m",
                      .description = "length along x and width along y of each footprint",
                      .frame = "x along the track, y to the left"});
+  if (has_horizontal) {
+    file.write_names("/direction", directions, "direction of the force on each footprint: x, y or down");
+  }
   file.commit();
 }
 
@@ -101,7 +115,23 @@ SurfaceLoads read_surface_loads(const std::filesystem::path& path) {
                                  path.string(), size.rows(), size.cols(), position.rows()));
   }
   for (Eigen::Index j = 0; j < position.rows(); ++j) {
-    loads.footprints.push_back({position(j, 0), position(j, 1), size(j, 0), size(j, 1)});
+    loads.footprints.push_back({position(j, 0), position(j, 1), size(j, 0), size(j, 1), LoadDirection::down});
+  }
+  if (reader.has("/direction")) {
+    const std::vector<std::string> directions = reader.read_names("/direction");
+    if (directions.size() != loads.footprints.size()) {
+      throw InputError(fmt::format("{}: \"/direction\" has {} texts, must have {}: one per footprint",
+                                   path.string(), directions.size(), loads.footprints.size()));
+    }
+    for (std::size_t j = 0; j < directions.size(); ++j) {
+      const auto name = std::find(direction_names.begin(), direction_names.end(), directions[j]);
+      if (name == direction_names.end()) {
+        throw InputError(
+            fmt::format("{}: \"/direction\": text {} is \"{}\", must be \"x\", \"y\" or \"down\"",
+                        path.string(), j, directions[j]));
+      }
+      loads.footprints[j].direction = static_cast<LoadDirection>(name - direction_names.begin());
+    }
   }
   if (const std::string fault = find_fault(loads); !fault.empty()) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));

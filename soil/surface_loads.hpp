@@ -10,13 +10,18 @@
 
 namespace easydyn::soil {
 
-/// A rectangle of the ground surface under uniform vertical pressure.
+/// Where a load pushes: along +x, along +y, downward.
+enum class LoadDirection { x, y, down };
+
+/// A rectangle of the ground surface under uniform vertical pressure or horizontal traction.
 struct Footprint {
   double x = 0, y = 0;           ///< centre [m]
   double length = 0, width = 0;  ///< along x, along y [m], > 0
+  LoadDirection direction = LoadDirection::down;
 };
 
-/// Load histories on the ground surface: force(i, j) [N], positive downward, at time(i) [s] on footprint j.
+/// Load histories on the ground surface: force(i, j) [N], positive along the footprint's direction (downward
+/// where nothing is said), at time(i) [s] on footprint j.
 /// The step is uniform. The one format between a source (train, pile driver, machine) and the ground.
 struct SurfaceLoads {
   Eigen::VectorXd time;

@@ -98,6 +98,31 @@ std::vector<double> TomlTable::numbers(std::string_view key, const char* unit) c
   return values;
 }
 
+bool TomlTable::flag(std::string_view key, bool otherwise) const {
+  const toml::node* node = find(key);
+  if (!node) return otherwise;
+  if (!node->is_boolean()) {
+    fail_type(key, *node, "true or false");
+  }
+  return *node->value<bool>();
+}
+
+std::array<double, 2> TomlTable::interval(std::string_view key, const char* unit,
+                                          bool may_be_infinite) const {
+  const toml::node& node = get(key);
+  const toml::array* array = node.as_array();
+  if (!array || array->size() != 2 || !array->get(0)->is_number() || !array->get(1)->is_number()) {
+    fail(key, fmt::format("{} must be an array of two numbers [{}]: from, to", key, unit));
+  }
+  const std::array<double, 2> ends{*array->get(0)->value<double>(), *array->get(1)->value<double>()};
+  const bool is_finite = std::isfinite(ends[0]) && std::isfinite(ends[1]);
+  if (!(ends[0] < ends[1]) || !(is_finite || may_be_infinite)) {
+    fail(key, fmt::format("{} = {}..{} {}, must be {}ascending", key, ends[0], ends[1], unit,
+                          may_be_infinite ? "" : "finite and "));
+  }
+  return ends;
+}
+
 TomlTable TomlTable::table(std::string_view key) const {
   static const toml::table nothing;
   const toml::node* node = find(key);

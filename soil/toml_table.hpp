@@ -4,6 +4,7 @@
 
 #include <toml++/toml.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <limits>
@@ -49,6 +50,9 @@ class TomlTable {
   std::string text(std::string_view key) const;  ///< a key that must be there, not empty
   std::string text(std::string_view key, std::string otherwise) const;        ///< may be empty
   std::vector<double> numbers(std::string_view key, const char* unit) const;  ///< an array of finite numbers
+  bool flag(std::string_view key, bool otherwise) const;
+  /// An array of two ascending numbers, which may be infinite where `may_be_infinite`.
+  std::array<double, 2> interval(std::string_view key, const char* unit, bool may_be_infinite) const;
   /// The table behind a key; an empty one if there is none.
   TomlTable table(std::string_view key) const;
   /// The tables of [[key]], in their order; each is called `key 1`, `key 2`, ... in messages.

@@ -74,6 +74,7 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
       boundary_(boundary),
       team_(std::clamp(threads, 1, lattice.ny())),
       tile_function_(find_tile_function<T>(lattice.degree)),
+      element_function_(find_element_function<T>(lattice.degree)),
       N_(lattice.degree),
       stride_(padded_lanes(lattice.nx(), Pack<T>::lanes)),
       nX_(lattice.nx() * N_ + 1),
@@ -109,10 +110,11 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
   v_.assign(size, T(0));
   zeta_.resize(rates_.size());
   for (auto& zeta : zeta_) zeta.assign(size, T(0));
-  load_.assign(guard + static_cast<std::size_t>(nY_) * N_ * stride_, T(0));
+  load_.assign(guard + nY_ * line_size(), T(0));
   loaded_row_.assign(nY_, 0);
   make_line_tables();
   make_boundary_tables();
+  if (!lattice_.blocks.empty()) make_block_tables();
 }
 
 template <class T>
@@ -147,7 +149,8 @@ void WaveEngine<T>::make_line_tables() {
       kx_[i * stride_ + e] = static_cast<T>(2 / (lattice_.x[e + 1] - lattice_.x[e]) / mx_[X]);
     if (i == 0 && e > 0) kx_left_[e] = static_cast<T>(2 / (lattice_.x[e] - lattice_.x[e - 1]) / mx_[X]);
   }
-  x_end_[0] = static_cast<T>(-0.5 / mx_.front());
+  // At a plane of symmetry, even or odd, what the terms of the face act on is zero or held.
+  if (!lattice_.quarter_model) x_end_[0] = static_cast<T>(-0.5 / mx_.front());
   x_end_[lattice_.nx()] = static_cast<T>(0.5 / mx_.back());
 }
 
@@ -178,6 +181,157 @@ void WaveEngine<T>::make_boundary_tables() {
   dash_s_bottom_ = dash_s(bottom);
   distance_x_ = {boundary_.origin[0] - lattice_.x.front(), lattice_.x.back() - boundary_.origin[0]};
   distance_y_ = {boundary_.origin[1] - lattice_.y.front(), lattice_.y.back() - boundary_.origin[1]};
+}
+
+template <class T>
+int WaveEngine<T>::find_material(int ex, int ey, int ez) const {
+  const auto is_in = [](const std::array<int, 2>& range, int e) { return range[0] <= e && e < range[1]; };
+  for (auto block = lattice_.blocks.rbegin(); block != lattice_.blocks.rend(); ++block)
+    if (is_in(block->x, ex) && is_in(block->y, ey) && is_in(block->z, ez)) return block->material;
+  return lattice_.layer[ez];
+}
+
+template <class T>
+void WaveEngine<T>::make_block_tables() {
+  const int nx = lattice_.nx(), ny = lattice_.ny(), nz = lattice_.nz();
+  ones_.assign(stride_, T(1));
+  hx_.assign(stride_, T(0));
+  slope_x_.assign(stride_, T(0));
+  for (int ex = 0; ex < nx; ++ex) {
+    const double h = lattice_.x[ex + 1] - lattice_.x[ex];
+    hx_[ex] = static_cast<T>(h);
+    slope_x_[ex] = static_cast<T>(2 / h);
+  }
+  block_row_.assign(static_cast<std::size_t>(ny) * nz, -1);
+  mass_line_.assign(static_cast<std::size_t>(nY_) * nZ_, -1);
+  for (int ez = 0; ez < nz; ++ez)
+    for (int ey = 0; ey < ny; ++ey) {
+      const int layer = lattice_.layer[ez];
+      BlockRow row{nx, 0, {}, {}, {}, {}, {}, {}, {}, {}};
+      for (auto* table :
+           {&row.lambda, &row.mu, &row.minus_lambda, &row.minus_mu, &row.lambda_change, &row.mu_change,
+            &row.beta, &row.minus_weight[0], &row.minus_weight[1], &row.minus_weight[2]})
+        table->assign(stride_, T(0));
+      for (int ex = 0; ex < nx; ++ex) {
+        const int material = find_material(ex, ey, ez);
+        if (material == layer) continue;
+        row.first = std::min(row.first, ex);
+        row.last = ex + 1;
+        const EngineMaterial& from = materials_[layer];
+        const EngineMaterial to = material < 0 ? EngineMaterial{} : materials_[material];
+        row.lambda[ex] = static_cast<T>(to.lambda);
+        row.mu[ex] = static_cast<T>(to.mu);
+        row.minus_lambda[ex] = static_cast<T>(-from.lambda);
+        row.minus_mu[ex] = static_cast<T>(-from.mu);
+        row.lambda_change[ex] = static_cast<T>(to.lambda - from.lambda);
+        row.mu_change[ex] = static_cast<T>(to.mu - from.mu);
+        row.beta[ex] = static_cast<T>(to.beta);
+        for (std::size_t l = 0; l < to.memory_weights.size(); ++l)
+          row.minus_weight[l][ex] = static_cast<T>(-to.memory_weights[l]);
+      }
+      if (row.last == 0) continue;
+      block_row_[static_cast<std::size_t>(ez) * ny + ey] = static_cast<int>(block_rows_.size());
+      block_rows_.push_back(std::move(row));
+    }
+
+  // True masses of the lines of those rows.
+  const GllRule rule(N_);
+  const auto density = [&](int ex, int ey, int ez) {
+    const int material = find_material(ex, ey, ez);
+    return material < 0 ? 0.0 : materials_[material].density;
+  };
+  // The one or two elements of a node on an axis, each with its share of the node's length.
+  struct Share {
+    int element;
+    double length;
+  };
+  const auto shares = [&](const std::vector<double>& lines, int node) {
+    std::vector<Share> result;
+    const int e = node / N_, i = node % N_;
+    if (i == 0 && e > 0) result.push_back({e - 1, rule.weights(N_) * (lines[e] - lines[e - 1]) / 2});
+    if (e + 1 < static_cast<int>(lines.size()))
+      result.push_back({e, rule.weights(i) * (lines[e + 1] - lines[e]) / 2});
+    return result;
+  };
+  for (int Z = 0; Z < nZ_; ++Z)
+    for (int Y = 0; Y < nY_; ++Y) {
+      const std::vector<Share> in_y = shares(lattice_.y, Y), in_z = shares(lattice_.z, Z);
+      bool has_block = false;
+      for (const Share& y : in_y)
+        for (const Share& z : in_z)
+          has_block = has_block || block_row_[static_cast<std::size_t>(z.element) * ny + y.element] >= 0;
+      if (!has_block) continue;
+      MassLine line;
+      line.ratio.assign(static_cast<std::size_t>(N_) * stride_, T(0));
+      line.inverse.assign(static_cast<std::size_t>(N_) * stride_, T(0));
+      for (int X = 0; X < nX_; ++X) {
+        double sum = 0;
+        for (const Share& z : in_z)
+          for (const Share& y : in_y)
+            for (const Share& x : shares(lattice_.x, X))
+              sum += density(x.element, y.element, z.element) * x.length * y.length * z.length;
+        const double ratio = sum / mass_of_layers(X, Y, Z);
+        const std::size_t place = static_cast<std::size_t>(X % N_) * stride_ + X / N_;
+        line.ratio[place] = static_cast<T>(ratio);
+        line.inverse[place] = static_cast<T>(ratio > 0 ? 1 / ratio : 0.0);
+      }
+      mass_line_[static_cast<std::size_t>(Z) * nY_ + Y] = static_cast<int>(mass_lines_.size());
+      mass_lines_.push_back(std::move(line));
+    }
+}
+
+template <class T>
+double WaveEngine<T>::mass(int X, int Y, int Z) const {
+  const MassLine* line = find_mass_line(Y, Z);
+  const double ratio =
+      line ? static_cast<double>(line->ratio[static_cast<std::size_t>(X % N_) * stride_ + X / N_]) : 1.0;
+  return ratio * mass_of_layers(X, Y, Z);
+}
+
+/// Takes the layer's elements out of a row's force and puts the blocks' in.
+template <class T>
+void WaveEngine<T>::add_blocks(const Tile<T>& tile, Field field, int ey, int ez) const {
+  if (block_row_.empty()) return;
+  const int number = block_row_[static_cast<std::size_t>(ez) * lattice_.ny() + ey];
+  if (number < 0) return;
+  const BlockRow& block = block_rows_[number];
+  const int n = N_ + 1;
+  ElementRow<T> row{};
+  row.stride = stride_;
+  row.first = block.first;
+  row.last = block.last;
+  row.rmx = rmx_.data();
+  row.hx = hx_.data();
+  row.slope_x = slope_x_.data();
+  row.hy = tile.hy;
+  row.hz = tile.hz;
+  std::copy_n(tile.f, n * n, row.f);
+  row.parts = 1;
+  row.weight[0] = ones_.data();
+  std::copy_n(tile.w, n * n, row.part[0]);
+  if (field == Field::plain) {  // w is the same for both materials
+    row.lambda = block.lambda_change.data();
+    row.mu = block.mu_change.data();
+    element_function_(row);
+    return;
+  }
+  row.lambda = block.minus_lambda.data();
+  row.mu = block.minus_mu.data();
+  element_function_(row);
+
+  row.lambda = block.lambda.data();
+  row.mu = block.mu.data();
+  const auto set_part = [&](int p, const AlignedVector<T>& values, const AlignedVector<T>& weight) {
+    row.weight[p] = weight.data();
+    for (int k = 0; k < n; ++k)
+      for (int j = 0; j < n; ++j)
+        row.part[p][k * n + j] = values.data() + line_offset(ey * N_ + j, ez * N_ + k);
+  };
+  set_part(0, u_, field == Field::weighted ? block.beta : ones_);
+  if (field == Field::viscous) set_part(row.parts++, v_, block.beta);
+  if (field == Field::memory)
+    for (std::size_t l = 0; l < zeta_.size(); ++l) set_part(row.parts++, zeta_[l], block.minus_weight[l]);
+  element_function_(row);
 }
 
 template <class T>
@@ -284,7 +438,7 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
         tile.my[j] = static_cast<T>(j < tile.j_end ? my_[ey * N_ + j] : 0.0);
         tile.gradient_end[j] = T(0);
       }
-      // At the symmetry plane u_y = 0 and the terms of the face vanish.
+      // At the plane of symmetry, even or odd, what the terms of the face act on is zero or held.
       if (ey == 0 && !lattice_.half_model) tile.gradient_end[0] = T(-0.5);
       if (last_row) tile.gradient_end[N_] = T(0.5);
       tile.y_end = (ey == 0 && !lattice_.half_model) || last_row;
@@ -332,6 +486,7 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
           }
       }
       tile_function_(tile);
+      add_blocks(tile, field, ey, ez);
 
       const int j0 = ey == r0 && seam_low ? 1 : 0, j1 = last_row ? n : N_, k1 = top ? n : N_;
       for (int k = 0; k < k1; ++k)
@@ -368,7 +523,7 @@ void WaveEngine<T>::add_springs(int Y, int Z, T* f) const {
   const std::size_t component = static_cast<std::size_t>(N_) * stride_;
   for (int c = 0; c < 3; ++c, f += component, u += component) {
     const double k_x = (c == 0 ? spring_normal_z_ : spring_shear_z_)[Z] * my_[Y];
-    f[0] += static_cast<T>(k_x / distance_x_[0] / mx_.front()) * u[0];
+    if (!lattice_.quarter_model) f[0] += static_cast<T>(k_x / distance_x_[0] / mx_.front()) * u[0];
     f[lattice_.nx()] += static_cast<T>(k_x / distance_x_[1] / mx_.back()) * u[lattice_.nx()];
     double k = 0;
     const double k_y = (c == 1 ? spring_normal_z_ : spring_shear_z_)[Z];
@@ -388,6 +543,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
   add_springs(Y, Z, f);
   const std::size_t offset = line_offset(Y, Z), row_size = static_cast<std::size_t>(N_) * stride_;
   const double line_mass = my_[Y] * mz_density_[Z];
+  const MassLine* const masses = find_mass_line(Y, Z);
   const bool loaded = Z == nZ_ - 1 && loaded_row_[Y];
   const T dt = static_cast<T>(dt_), half_dt = static_cast<T>(0.5 * dt_);
   const int memories = static_cast<int>(zeta_.size());
@@ -401,7 +557,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
     T* z[3] = {};
     for (int l = 0; l < memories; ++l) z[l] = zeta_[l].data() + offset + c * row_size;
     const T* force = f + c * row_size;
-    const T* load = loaded && c == 2 ? load_.data() + Y * row_size : nullptr;
+    const T* load = loaded ? load_.data() + Y * line_size() + c * row_size : nullptr;
 
     // Factors of the line: sponge along y and z, dashpots of the faces y = const and z = const.
     double decay = decay_y_[Y] * decay_z_[Z], gain = gain_y_[Y] * gain_z_[Z];
@@ -410,6 +566,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
       gain /= 1 + a;
     };
     const int last = lattice_.nx();
+    if (is_held_at_start(c)) f[c * row_size] = T(0);
     T end_force[2] = {force[0], force[last]};
     if (boundary_.dashpots) {
       const double y_dashpot = dt_ / 2 * (c == 1 ? dash_p_z_ : dash_s_z_)[Z] / mz_density_[Z];
@@ -419,9 +576,11 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
       // Those of the faces x = const act on the first and the last node only.
       const double x_dashpot = dt_ / 2 * (c == 0 ? dash_p_z_ : dash_s_z_)[Z] / mz_density_[Z];
       for (const int end : {0, last}) {
+        if (end == 0 && lattice_.quarter_model) continue;
         const double a = x_dashpot / (end == 0 ? mx_.front() : mx_.back());
         v[end] *= static_cast<T>((1 - a) / (1 + a));
-        f[c * row_size + end] *= static_cast<T>(1 / (1 + a));
+        const T load_end = load ? load[end] : T(0);  // added again below
+        f[c * row_size + end] = (force[end] + load_end) * static_cast<T>(1 / (1 + a)) - load_end;
       }
     }
     const T line_decay = static_cast<T>(decay) * y_factor(c, Y);
@@ -432,6 +591,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
         V total = load_pack(force + p);
         const V internal = total;
         if (load) total += load_pack(load + p);
+        if (masses) total *= load_pack(masses->inverse.data() + p);
         const V v_old = load_pack(v + p), u_old = load_pack(u + p);
         const V v_new = load_pack(decay_x_.data() + p) * (line_decay * v_old) +
                         load_pack(gain_x_.data() + p) * (line_gain * total);
@@ -451,7 +611,9 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
           const V decay_p = load_pack(decay_x_.data() + p) * static_cast<T>(decay);
           const V gain_p = load_pack(gain_x_.data() + p) * static_cast<T>(2 * gain);
           const V mx = load_pack(mx_table_.data() + p);
-          kinetic += mx * (T(1) + decay_p) / gain_p * v_new * v_new;
+          V kinetic_p = mx * (T(1) + decay_p) / gain_p * v_new * v_new;
+          if (masses) kinetic_p *= load_pack(masses->ratio.data() + p);
+          kinetic += kinetic_p;
           strain += mx * u_new * internal;
           if (load) work -= mx * load_pack(load + p) * (v_old + v_new);
         }
@@ -484,14 +646,14 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
 
 template <class T>
 void WaveEngine<T>::advance(const std::vector<SurfaceNodeForce>& forces, bool account) {
-  const std::size_t row_size = static_cast<std::size_t>(N_) * stride_;
   for (int Y = 0; Y < nY_; ++Y)
     if (loaded_row_[Y]) {
-      std::fill_n(load_.begin() + Y * row_size, row_size, T(0));
+      std::fill_n(load_.begin() + Y * line_size(), line_size(), T(0));
       loaded_row_[Y] = 0;
     }
   for (const SurfaceNodeForce& force : forces) {
-    load_[force.Y * row_size + force.X % N_ * stride_ + force.X / N_] -=
+    if (force.X == 0 && is_held_at_start(force.component)) continue;
+    load_[force.Y * line_size() + (force.component * N_ + force.X % N_) * stride_ + force.X / N_] -=
         static_cast<T>(force.force / mx_[force.X]);
     loaded_row_[force.Y] = 1;
   }
@@ -529,7 +691,7 @@ double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) 
     for (int Y = 0; Y < nY_; ++Y)
       for (int c = 0; c < 3; ++c)
         for (int X = 0; X < nX_; ++X)
-          u_[index(c, X, Y, Z)] = static_cast<T>(uniform(random)) * y_factor(c, Y);
+          u_[index(c, X, Y, Z)] = mass(X, Y, Z) > 0 ? static_cast<T>(uniform(random)) * y_factor(c, Y) : T(0);
   const std::size_t row_size = static_cast<std::size_t>(N_) * stride_;
   double eigenvalue = 0, scale = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
@@ -538,12 +700,18 @@ double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) 
       if (!weighted) add_springs(Y, Z, f);
       T* u = u_.data() + line_offset(Y, Z);
       const double line_mass = my_[Y] * mz_density_[Z];
+      const MassLine* const masses = find_mass_line(Y, Z);
       pack<T> xkx{}, xmx{};
       for (int c = 0; c < 3; ++c) {
+        if (is_held_at_start(c)) f[c * row_size] = u[c * row_size] = T(0);
         const T factor = static_cast<T>(scale / line_mass) * y_factor(c, Y);
         for (std::size_t p = 0; p < row_size; p += Pack<T>::lanes) {
-          const pack<T> x = load_pack(u + c * row_size + p), mx = load_pack(mx_table_.data() + p);
-          const pack<T> y = factor * load_pack(f + c * row_size + p);
+          const pack<T> x = load_pack(u + c * row_size + p);
+          pack<T> mx = load_pack(mx_table_.data() + p), y = factor * load_pack(f + c * row_size + p);
+          if (masses) {
+            y *= load_pack(masses->inverse.data() + p);
+            mx *= load_pack(masses->ratio.data() + p);
+          }
           xkx += mx * x * y;
           xmx += mx * x * x;
           store_pack(u + c * row_size + p, y);

@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "soil/element_operator.hpp"
 #include "soil/lattice.hpp"
 #include "soil/simd.hpp"
 #include "soil/thread_team.hpp"
@@ -10,7 +11,7 @@
 
 namespace easydyn::soil {
 
-/// Material of one layer as the engine needs it.
+/// Material of one layer or block as the engine needs it.
 struct EngineMaterial {
   double lambda = 0, mu = 0, density = 0;  ///< [Pa], [kg/m3]; unrelaxed moduli where there is memory
   double beta = 0;                         ///< [s] stiffness-proportional damping
@@ -22,18 +23,22 @@ struct EngineBoundary {
   /// Damping at the outer edge of a sponge [1/s] = strength x speed / length of the sponge, rising from its inner
   /// edge as the square of the distance: a wave of that speed loses strength / 6 nepers on its way out.
   double sponge_strength = 10;
-  double sponge_speed = 0;         ///< [m/s] shear wave speed of the half-space; 0: no sponge
+  double sponge_speed = 0;  ///< [m/s] shear wave speed of the half-space; 0: no sponge
+  /// The motion at the plane x = 0 of a quarter model, y = 0 of a half model, is antisymmetric: components along
+  /// the plane are zero there, else the one across it.
+  bool odd_x = false, odd_y = false;
   bool dashpots = true;            ///< viscous dashpots and far-field springs on the outer faces
   std::array<double, 2> origin{};  ///< x, y [m] of the middle of the loads: the springs know their distance
 };
 
-/// Force on a node of the surface [N], z up.
+/// Force on a node of the surface [N], along x, y or z (upward).
 struct SurfaceNodeForce {
   int X = 0, Y = 0;
   double force = 0;
+  int component = 2;
 };
 
-/// Leapfrog for the waves in a lattice whose material depends on depth only: fields, operator, boundaries.
+/// Leapfrog for the waves in a lattice of layers and blocks: fields, operator, boundaries.
 ///
 ///   M (v+ - v-) / dt + C (v+ + v-) / 2 = F - K w,  u+ = u + dt v+
 ///   w = u + beta v-,  or  w = u - sum_l y_l zeta_l  with zeta_l. = omega_l (u - zeta_l), or w = u
@@ -46,6 +51,11 @@ struct SurfaceNodeForce {
 /// One sweep per step, row of elements by row of elements (tile_operator.hpp): a line of nodes is advanced as
 /// soon as its last row is done, so the force never reaches the memory. Threads take ranges of rows in y; the
 /// line of nodes between two ranges waits for both.
+///
+/// Blocks: the sweep treats all elements of a row as of the layer's material; rows with blocks then get the
+/// difference, element by element (element_operator.hpp), and their lines the ratio of the true mass to the
+/// layer's. Nodes inside open blocks have no mass and stay at rest. Sponge, dashpots and springs are the layer's
+/// where a block reaches the edge of the model; they take energy away or conserve it whatever the block is.
 template <class T>
 class WaveEngine {
  public:
@@ -77,7 +87,7 @@ class WaveEngine {
   void set_to_rest();
   /// f = K u with the present displacement, springs included, ordered [component][Z][Y][X].
   std::vector<double> compute_internal_force();
-  double mass(int X, int Y, int Z) const { return mx_[X] * my_[Y] * mz_density_[Z]; }  ///< nodal [kg]
+  double mass(int X, int Y, int Z) const;  ///< nodal [kg]; zero inside open blocks
 
   int nodes_x() const { return nX_; }
   int nodes_y() const { return nY_; }
@@ -89,6 +99,17 @@ class WaveEngine {
     int layer;
     double hz;
     bool below_same, above_same;  // material
+  };
+  struct BlockRow {  // a row of elements with blocks in it; tables [stride] per element
+    int first, last;
+    AlignedVector<T> lambda, mu;              // zero outside blocks and where open
+    AlignedVector<T> minus_lambda, minus_mu;  // those of the layer, where a block is
+    AlignedVector<T> lambda_change, mu_change;
+    AlignedVector<T> beta;
+    std::array<AlignedVector<T>, 3> minus_weight;  // of the memory variables
+  };
+  struct MassLine {                   // a line of nodes whose masses are not the layers'; tables [N][stride]
+    AlignedVector<T> ratio, inverse;  // true mass / that of the layers; inverse 0 where there is none
   };
   struct Scratch {  // of one thread
     AlignedVector<T> w, f, plane[2], seam_low, seam_high;
@@ -104,8 +125,21 @@ class WaveEngine {
   }
   void make_line_tables();
   void make_boundary_tables();
+  void make_block_tables();
+  int find_material(int ex, int ey, int ez) const;
+  double mass_of_layers(int X, int Y, int Z) const { return mx_[X] * my_[Y] * mz_density_[Z]; }
+  const MassLine* find_mass_line(int Y, int Z) const {
+    if (mass_line_.empty()) return nullptr;
+    const int line = mass_line_[static_cast<std::size_t>(Z) * nY_ + Y];
+    return line < 0 ? nullptr : &mass_lines_[line];
+  }
+  void add_blocks(const Tile<T>& tile, Field field, int ey, int ez) const;
   T y_factor(int component, int Y) const {
-    return lattice_.half_model && component == 1 && Y == 0 ? T(0) : T(1);
+    return lattice_.half_model && Y == 0 && (component == 1) != boundary_.odd_y ? T(0) : T(1);
+  }
+  /// Held at rest at X = 0.
+  bool is_held_at_start(int component) const {
+    return lattice_.quarter_model && (component == 0) != boundary_.odd_x;
   }
   template <class Finish>
   void sweep(int thread, Field field, const Finish& finish);
@@ -126,6 +160,7 @@ class WaveEngine {
   EngineBoundary boundary_;
   ThreadTeam team_;
   TileFunction<T> tile_function_;
+  ElementFunction<T> element_function_;
   int N_, stride_, nX_, nY_, nZ_;
   std::vector<Slab> slabs_;
   std::vector<int> first_row_;  // per thread, and the end
@@ -143,13 +178,19 @@ class WaveEngine {
   AlignedVector<T> decay_x_, gain_x_;  // sponge factors (1 - a) / (1 + a) and 1 / (1 + a)
   std::vector<double> decay_y_, gain_y_, decay_z_, gain_z_;
 
+  // Blocks: index of each row of elements and of each line of nodes, -1: none; empty without blocks.
+  std::vector<int> block_row_, mass_line_;
+  std::vector<BlockRow> block_rows_;
+  std::vector<MassLine> mass_lines_;
+  AlignedVector<T> hx_, slope_x_, ones_;
+
   AlignedVector<T> u_, v_;
   std::vector<AlignedVector<T>> zeta_;
   std::vector<Scratch> scratch_;
   std::vector<T> keep_;  // exp(-omega_l dt)
   double dt_ = 0;
 
-  // Surface forces of the step: lines of the top plane, divided by m_x.
+  // Surface forces of the step: lines of the top plane [Y][component][N][stride], divided by m_x.
   AlignedVector<T> load_;
   std::vector<char> loaded_row_;
   double energy_ = 0, step_work_ = 0;

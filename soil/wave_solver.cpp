@@ -69,8 +69,15 @@ Relaxation fit_constant_ratio(const Site& site, const Layer& layer) {
 Rheology make_rheology(const Site& site, DampingModel model) {
   Rheology rheology;
   const bool damped =
-      std::any_of(site.layers.begin(), site.layers.end(), [](const Layer& l) { return l.damping > 0; });
-  for (const Layer& layer : site.layers) {
+      std::any_of(site.layers.begin(), site.layers.end(), [](const Layer& l) { return l.damping > 0; }) ||
+      std::any_of(site.blocks.begin(), site.blocks.end(),
+                  [](const Block& b) { return !b.open && b.material.damping > 0; });
+  // Layers, then blocks; what is open has no material but keeps its place.
+  std::vector<const Layer*> all;
+  for (const Layer& layer : site.layers) all.push_back(&layer);
+  for (const Block& block : site.blocks) all.push_back(block.open ? &site.layers.front() : &block.material);
+  for (const Layer* const each : all) {
+    const Layer& layer = *each;
     EngineMaterial material{layer.lame_lambda(), layer.shear_modulus(), layer.density, 0, {}};
     if (damped && model == DampingModel::stiffness_proportional)
       material.beta = layer.damping / (M_PI * site.damping_frequency);
@@ -84,6 +91,26 @@ Rheology make_rheology(const Site& site, DampingModel model) {
     rheology.materials.push_back(material);
   }
   return rheology;
+}
+
+/// Whether the loads are antisymmetric about x = 0, y = 0 (`axis` 0, 1), where the model ends there.
+bool is_odd(const std::vector<Footprint>& footprints, const SolverOptions& options, int axis) {
+  if (!(axis == 0 ? options.quarter_model : options.half_model || options.quarter_model)) return false;
+  const LoadDirection across = axis == 0 ? LoadDirection::x : LoadDirection::y;
+  const auto crosses = [&](const Footprint& f) { return f.direction == across; };
+  const bool odd = crosses(footprints.front());
+  for (std::size_t f = 0; f < footprints.size(); ++f)
+    if (crosses(footprints[f]) != odd)
+      throw ModelError(
+          fmt::format("footprint {}: its direction is {}along {} unlike that of footprint 1, must be all or "
+                      "none in the {} "
+                      "model (both kinds need the full model, option --full-model)",
+                      f + 1, odd ? "not " : "", axis == 0 ? "x" : "y", axis == 0 ? "quarter" : "half"));
+  return odd;
+}
+
+int component_of(LoadDirection direction) {
+  return direction == LoadDirection::x ? 0 : direction == LoadDirection::y ? 1 : 2;
 }
 
 double physical_memory() {
@@ -113,6 +140,7 @@ struct WaveSolver::Impl {
   Impl(const Site& site_, const SurfaceLoads& loads, const SolverOptions& options_);
 
   void update_surface_forces(double t);
+  void check_nodes_are_in_the_ground();
   template <class Read>
   double weigh(const std::vector<NodeWeight>& nodes, Read read) const {
     double sum = 0;
@@ -131,6 +159,8 @@ struct WaveSolver::Impl {
   Lattice lattice;
   LoadHistory history;
   std::vector<FootprintWeights> footprints;
+  std::vector<LoadDirection> directions;
+  bool odd_x = false, odd_y = false;
   std::vector<ReceiverWeights> receivers;
   Eigen::VectorXd taper, forces;
   std::vector<SurfaceNodeForce> node_forces;
@@ -148,7 +178,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   check_options(options);
   LatticeOptions lattice_options;
   lattice_options.degree = options.degree;
+  if (options.quarter_model) options.half_model = true;
   lattice_options.half_model = options.half_model;
+  lattice_options.quarter_model = options.quarter_model;
   // A wave must find the same length of sponge whatever the size of the elements.
   lattice_options.sponge_elements =
       options.sponge_elements >= 0
@@ -156,11 +188,16 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
           : static_cast<int>(std::lround(8 * site.points_per_wavelength / 5.5 * 4 / options.degree));
   lattice_options.sponge_growth = options.sponge_growth;
   lattice = make_lattice(site, loads.footprints, lattice_options);
-  for (std::size_t f = 0; f < loads.footprints.size(); ++f)
+  for (std::size_t f = 0; f < loads.footprints.size(); ++f) {
     footprints.push_back(compute_footprint_weights(lattice, loads.footprints[f], f + 1));
+    directions.push_back(loads.footprints[f].direction);
+  }
   for (const Receiver& receiver : site.receivers)
     receivers.push_back(compute_receiver_weights(lattice, receiver));
   taper = compute_taper(loads.footprints, site.taper_length);
+
+  odd_x = is_odd(loads.footprints, options, 0);
+  odd_y = is_odd(loads.footprints, options, 1);
 
   const Rheology rheology = make_rheology(site, options.damping);
   const int memories = static_cast<int>(rheology.rates.size());
@@ -179,6 +216,8 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   boundary.sponge_strength = options.sponge_strength;
   boundary.sponge_speed = site.layers.back().cs;
   boundary.dashpots = options.dashpots;
+  boundary.odd_x = odd_x;
+  boundary.odd_y = odd_y;
   for (const Footprint& f : loads.footprints) {
     boundary.origin[0] += f.x / static_cast<double>(loads.footprints.size());
     boundary.origin[1] += f.y / static_cast<double>(loads.footprints.size());
@@ -190,6 +229,8 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   else
     float_engine =
         std::make_unique<WaveEngine<float>>(lattice, rheology.materials, rheology.rates, boundary, threads);
+
+  if (!lattice.blocks.empty()) check_nodes_are_in_the_ground();
 
   // The output step is a whole number of time steps.
   const double largest =
@@ -238,13 +279,28 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   preload_outputs = preloaded ? static_cast<long>(std::ceil(options.preload_time / output_step)) : 0;
 }
 
+void WaveSolver::Impl::check_nodes_are_in_the_ground() {
+  const auto check = [&](const std::vector<NodeWeight>& nodes, const std::string& who) {
+    for (const NodeWeight& n : nodes)
+      if (!(with_engine([&](const auto& engine) { return engine.mass(n.X, n.Y, n.Z); }) > 0))
+        throw ModelError(who + ": lies in an open block, must be on or in the ground");
+  };
+  for (std::size_t f = 0; f < footprints.size(); ++f)
+    check(footprints[f].force, fmt::format("footprint {}", f + 1));
+  for (std::size_t r = 0; r < receivers.size(); ++r)
+    check(receivers[r].nodes, fmt::format("receiver \"{}\"", site.receivers[r].name));
+}
+
 void WaveSolver::Impl::update_surface_forces(double t) {
   history.update_forces(t, forces);
   node_forces.clear();
   for (std::size_t f = 0; f < footprints.size(); ++f) {
     const double force = forces(static_cast<Eigen::Index>(f)) * taper(static_cast<Eigen::Index>(f));
     if (force == 0) continue;
-    for (const NodeWeight& n : footprints[f].force) node_forces.push_back({n.X, n.Y, -force * n.weight});
+    const int component = component_of(directions[f]);
+    const double sign = component == 2 ? -1 : 1;  // z is upward
+    for (const NodeWeight& n : footprints[f].force)
+      node_forces.push_back({n.X, n.Y, sign * force * n.weight, component});
   }
 }
 
@@ -269,7 +325,8 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const std::function<vo
     for (Eigen::Index r = 0; r < nr; ++r) {
       const ReceiverWeights& receiver = receivers[static_cast<std::size_t>(r)];
       for (int c = 0; c < 3; ++c) {
-        const double sign = c == 1 && receiver.mirrored ? -1 : 1;
+        const double sign = (receiver.mirrored_x && (c == 0) != odd_x ? -1 : 1) *
+                            (receiver.mirrored_y && (c == 1) != odd_y ? -1 : 1);
         (*velocity[c])(row, r) += 0.5 * sign * weigh(receiver.nodes, [&](const NodeWeight& n) {
                                     return engine.velocity(c, n.X, n.Y, n.Z);
                                   });
@@ -283,10 +340,13 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const std::function<vo
     if (row >= 0) {
       motion.time(row) = t;
       add_velocities(row);
-      for (Eigen::Index f = 0; f < nl; ++f)
+      for (Eigen::Index f = 0; f < nl; ++f) {
+        const int component = component_of(directions[static_cast<std::size_t>(f)]);
         motion.footprint_displacement(row, f) =
-            -weigh(footprints[static_cast<std::size_t>(f)].mean,
-                   [&](const NodeWeight& n) { return engine.displacement(2, n.X, n.Y, n.Z); });
+            (component == 2 ? -1 : 1) *
+            weigh(footprints[static_cast<std::size_t>(f)].mean,
+                  [&](const NodeWeight& n) { return engine.displacement(component, n.X, n.Y, n.Z); });
+      }
     }
     update_surface_forces(t);
     engine.advance(node_forces, output);

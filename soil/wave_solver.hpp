@@ -22,7 +22,8 @@ enum class DampingModel {
 /// What the solver may be told; the defaults suit railway vibration.
 struct SolverOptions {
   int degree = 4;                 ///< polynomial degree, 3..6
-  bool half_model = true;         ///< only y >= 0; loads symmetric about y = 0
+  bool half_model = true;         ///< only y >= 0; loads on the axis, all along y or none of them
+  bool quarter_model = false;     ///< only x >= 0 and y >= 0; one load, at the origin
   double step_safety = 0.95;      ///< time step / stable limit, 0..1
   int threads = 0;                ///< 0: one per core, fewer for a small model
   double output_step = 0;         ///< [s]; 0: a few steps, at most 1 / (10 highest_frequency)
@@ -53,23 +54,26 @@ struct RunSummary {
 struct GroundMotion {
   Eigen::VectorXd time;                    ///< nt [s]
   Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
-  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, downward
+  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, along its load
   Eigen::VectorXd taper;                   ///< nl: factor on each load
   Eigen::VectorXd energy;                  ///< nt [J] kinetic + u . K w / 2 (w below; strain energy where
-                                           ///< undamped), of the half model if one
+                                           ///< undamped), of the half or the quarter model if one
 };
 
-/// Waves in a layered half-space under surface loads: 3D spectral elements, explicit leapfrog.
+/// Waves in a layered half-space with blocks under surface loads: 3D spectral elements, explicit leapfrog.
 ///
 ///   M u.. + C u. + K w = sum_j F_j(t) p_j,    w = u (elastic), u + beta u. or u - sum_l y_l zeta_l (damped)
 ///
-/// M diagonal (GLL quadrature), C sponge and dashpots, p_j uniform pressure over footprint j.
+/// M diagonal (GLL quadrature), C sponge and dashpots, p_j uniform traction over footprint j. Loads along y on the
+/// axis y = 0 move the ground antisymmetrically about it, the others symmetrically; the half model can hold one
+/// kind at a time, the quarter model one load.
 /// Nothing above Site::highest_frequency is claimed: outputs are decimated without a filter because the loads
 /// are expected to be limited by limit_band(): unchanged up to that frequency, zero from 1.25 times it.
 class WaveSolver {
  public:
   /// @throws ModelError if site, loads or options are out of range, a receiver or footprint is outside the
-  ///         undamped ground, or the fields do not fit in memory
+  ///         undamped ground or in an open block, loads of both kinds meet in the half model, or the fields
+  ///         do not fit in memory
   WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
   ~WaveSolver();
   WaveSolver(WaveSolver&&) noexcept;

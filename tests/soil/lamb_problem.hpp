@@ -14,7 +14,7 @@ struct Errors {
 
 /// Ricker force on a small footprint of a homogeneous half-space; relative L2 error of the velocity over the
 /// whole record at 5, 10 and 20 m.
-inline Errors compare_with_lamb(double nu, double f0, double points, double safety) {
+inline Errors compare_with_lamb(double nu, double f0, double points, double safety, int degree = 4) {
   Site site;
   Layer ground;
   ground.density = 1800;
@@ -41,6 +41,7 @@ inline Errors compare_with_lamb(double nu, double f0, double points, double safe
   SolverOptions options;
   options.output_step = 1e-3;
   options.step_safety = safety;
+  options.degree = degree;
   WaveSolver solver(site, loads, options);
   const GroundMotion motion = solver.run();
 
@@ -63,9 +64,10 @@ inline Errors compare_with_lamb(double nu, double f0, double points, double safe
     errors.vertical[k] = std::sqrt(difference[0] / norm[0]);
     errors.radial[k] = std::sqrt(difference[1] / norm[1]);
   }
-  std::printf("nu %.2f: dt %.3g s, %ld dof, %ld steps: vertical %.4f %.4f %.4f radial %.4f %.4f %.4f\n", nu,
-              solver.time_step(), solver.lattice().dofs(), solver.steps(), errors.vertical[0],
-              errors.vertical[1], errors.vertical[2], errors.radial[0], errors.radial[1], errors.radial[2]);
+  std::printf(
+      "nu %.2f, degree %d: dt %.3g s, %ld dof, %ld steps: vertical %.4f %.4f %.4f radial %.4f %.4f %.4f\n",
+      nu, degree, solver.time_step(), solver.lattice().dofs(), solver.steps(), errors.vertical[0],
+      errors.vertical[1], errors.vertical[2], errors.radial[0], errors.radial[1], errors.radial[2]);
   return errors;
 }
 

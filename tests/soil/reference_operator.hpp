@@ -28,7 +28,12 @@ inline std::vector<double> compute_reference_force(const Lattice& lattice,
   for (int ez = 0; ez < lattice.nz(); ++ez)
     for (int ey = 0; ey < lattice.ny(); ++ey)
       for (int ex = 0; ex < lattice.nx(); ++ex) {
-        const EngineMaterial& m = materials[lattice.layer[ez]];
+        int material = lattice.layer[ez];
+        for (const LatticeBlock& b : lattice.blocks)
+          if (b.x[0] <= ex && ex < b.x[1] && b.y[0] <= ey && ey < b.y[1] && b.z[0] <= ez && ez < b.z[1])
+            material = b.material;
+        if (material < 0) continue;
+        const EngineMaterial& m = materials[material];
         const double h[3] = {lattice.x[ex + 1] - lattice.x[ex], lattice.y[ey + 1] - lattice.y[ey],
                              lattice.z[ez + 1] - lattice.z[ez]};
         for (int k = 0; k < n; ++k)

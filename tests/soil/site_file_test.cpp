@@ -122,6 +122,69 @@ TEST(SiteFile, PlacesASurfaceReceiverByTwoCoordinates) {
   EXPECT_THAT(read(replaced("[1, 2, -3]", "[1.5, 2]")).receivers[1].position, ElementsAre(1.5, 2, 0));
 }
 
+const std::string two_blocks = R"([[block]]
+name = "trench"
+y = [5, 6]
+z = [-4, 0]
+open = true
+mirrored = true
+
+[[block]]
+x = [-inf, 2.5]
+z = [-3, -2]
+density = 2300
+damping = 0.01
+cs = 900
+nu = 0.2
+source = "drawing 7"
+
+[[receiver]]
+name = "8 m")";
+
+TEST(SiteFile, BringsBlocks) {
+  const Site site = read(replaced("[[receiver]]\nname = \"8 m\"", two_blocks));
+  ASSERT_EQ(site.blocks.size(), 2u);
+  const Block &trench = site.blocks[0], &slab = site.blocks[1];
+  EXPECT_EQ(trench.name, "trench");
+  EXPECT_TRUE(trench.open);
+  EXPECT_TRUE(trench.mirrored);
+  EXPECT_EQ(trench.x[0], -INFINITY);
+  EXPECT_EQ(trench.x[1], INFINITY);
+  EXPECT_THAT(trench.y, ElementsAre(5, 6));
+  EXPECT_THAT(trench.z, ElementsAre(-4, 0));
+  EXPECT_FALSE(slab.open);
+  EXPECT_FALSE(slab.mirrored);
+  EXPECT_THAT(slab.x, ElementsAre(-INFINITY, 2.5));
+  EXPECT_EQ(slab.y[1], INFINITY);
+  EXPECT_EQ(slab.material.density, 2300);
+  EXPECT_EQ(slab.material.cs, 900);
+  EXPECT_NEAR(slab.material.poisson_ratio(), 0.2, 1e-12);
+  EXPECT_EQ(slab.material.damping, 0.01);
+  EXPECT_EQ(slab.material.source, "drawing 7");
+}
+
+TEST(SiteFileFault, IsABlockThatCannotBe) {
+  const auto fault = [](const std::string& from, const std::string& to) {
+    std::string text = replaced("[[receiver]]\nname = \"8 m\"", two_blocks);
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return fault_of(text.replace(at, from.size(), to));
+  };
+  EXPECT_EQ(fault("y = [5, 6]", "y = [6, 5]"),
+            "site.toml:21:5: block \"trench\": y = 6..5 m, must be ascending");
+  EXPECT_EQ(fault("z = [-4, 0]", "z = [-inf, 0]"),
+            "site.toml:22:5: block \"trench\": z = -inf..0 m, must be finite and ascending");
+  EXPECT_THAT(fault("z = [-4, 0]", "z = [-4, 1]"), HasSubstr("z = -4..1 m, must be <= 0"));
+  EXPECT_THAT(fault("y = [5, 6]", "y = [-5, 6]"), HasSubstr("y = -5..6 m contains y = 0"));
+  EXPECT_THAT(fault("y = [5, 6]", "y = 5"), HasSubstr("y must be an array of two numbers [m]"));
+  EXPECT_THAT(fault("open = true", "open = 1"), EndsWith("open is a number, must be true or false"));
+  EXPECT_THAT(fault("open = true", "open = true\ncs = 100"), HasSubstr("both open = true and cs"));
+  EXPECT_THAT(fault("density = 2300\n", ""), EndsWith("block 2: \"density\" is missing"));
+  EXPECT_THAT(fault("z = [-3, -2]\n", ""), EndsWith("block 2: \"z\" is missing"));
+  EXPECT_THAT(fault("cs = 900", "cs = -900"), EndsWith("block 2: cs = -900 m/s, must be > 0"));
+  EXPECT_THAT(fault("open = true", "opened = true"), HasSubstr("did you mean \"open\"?"));
+}
+
 TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
   EXPECT_EQ(fault_of("cs = 150", "cs = -150"), "site.toml:9:6: layer \"loam\": cs = -150 m/s, must be > 0");
   EXPECT_EQ(fault_of("density = 2000", "density = -2e3"),

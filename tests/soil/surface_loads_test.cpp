@@ -48,6 +48,22 @@ TEST(SurfaceLoads, ComeBackAsWritten) {
   EXPECT_EQ(read.footprints[1].width, 2.6);
 }
 
+TEST(SurfaceLoads, KeepTheirDirections) {
+  const TemporaryFolder folder;
+  SurfaceLoads loads = make_loads();
+  loads.footprints[1].direction = LoadDirection::y;
+  write_surface_loads(folder / "a.h5", loads, {});
+  EXPECT_EQ(results::ResultReader(folder / "a.h5").read_names("/direction"),
+            (std::vector<std::string>{"down", "y"}));
+  const SurfaceLoads read = read_surface_loads(folder / "a.h5");
+  EXPECT_EQ(read.footprints[0].direction, LoadDirection::down);
+  EXPECT_EQ(read.footprints[1].direction, LoadDirection::y);
+  // A file without directions, as all were written before, loads downward, and is still written so.
+  write_surface_loads(folder / "b.h5", make_loads(), {});
+  EXPECT_FALSE(results::ResultReader(folder / "b.h5").has("/direction"));
+  EXPECT_EQ(read_surface_loads(folder / "b.h5").footprints[1].direction, LoadDirection::down);
+}
+
 TEST(SurfaceLoads, AcceptTimesThatAreUniformUpToRounding) {
   const TemporaryFolder folder;
   SurfaceLoads loads = make_loads();
@@ -82,13 +98,17 @@ TEST(SurfaceLoadsFile, NamesFileAndDataset) {
 
   // A file by a foreign program, whose matrices are transposed or hold NaN.
   const results::Meaning any{.units = "1", .description = "", .frame = ""};
-  const auto write = [&](const Eigen::MatrixXd& force, const Eigen::MatrixXd& size) {
+  const auto write = [&](const Eigen::MatrixXd& force, const Eigen::MatrixXd& size,
+                         const std::vector<std::string>& directions = {}) {
     results::ResultFile file(folder / "a.h5", {});
     file.write_vector("/time", Eigen::Vector3d(0, 1, 2), any);
     file.write_matrix("/force", force, any, /*allow_nan=*/true);
     file.write_matrix("/position", Eigen::MatrixXd::Zero(2, 2), any);
     if (size.size() > 0) {
       file.write_matrix("/size", size, any);
+    }
+    if (!directions.empty()) {
+      file.write_names("/direction", directions, "");
     }
     file.commit();
   };
@@ -97,6 +117,11 @@ TEST(SurfaceLoadsFile, NamesFileAndDataset) {
   EXPECT_THAT(message(), HasSubstr("a.h5: \"/size\" is missing"));
   write(ones, Eigen::MatrixXd::Ones(3, 2));
   EXPECT_THAT(message(), HasSubstr("a.h5: \"/size\" has the shape (3 x 2), must be (2 x 2)"));
+  write(ones, Eigen::MatrixXd::Ones(2, 2), {"x"});
+  EXPECT_THAT(message(), HasSubstr("a.h5: \"/direction\" has 1 texts, must have 2"));
+  write(ones, Eigen::MatrixXd::Ones(2, 2), {"x", "up"});
+  EXPECT_THAT(message(),
+              HasSubstr("a.h5: \"/direction\": text 1 is \"up\", must be \"x\", \"y\" or \"down\""));
   write(ones.transpose(), Eigen::MatrixXd::Ones(2, 2));
   EXPECT_THAT(message(), HasSubstr("a.h5: \"/force\" has the shape (2 x 3), must be (3 x 2)"));
   write(ones * NAN, Eigen::MatrixXd::Ones(2, 2));
