@@ -119,7 +119,7 @@ class Response {
   Response(const LayeredGround& ground, const FootprintRequest& request, const Eigen::VectorXcd& w)
       : ground_(ground), request_(request), w_(w) {
     // A load along y is one along x after a quarter turn.
-    if (request_.direction == LoadDirection::along_y) {
+    if (request_.direction == LoadDirection::y) {
       std::swap(request_.length, request_.width);
       for (auto& point : request_.points) point = {point[1], -point[0], point[2]};
     }
@@ -168,7 +168,7 @@ class Response {
       const auto surface = std::find(depths_.begin(), depths_.end(), 0.0) - depths_.begin();
       add_means(radial[static_cast<std::size_t>(surface)], grid, out);
     }
-    if (request_.direction == LoadDirection::along_y) {  // turn back
+    if (request_.direction == LoadDirection::y) {  // turn back
       out.ux.swap(out.uy);
       out.ux *= -1;
     }

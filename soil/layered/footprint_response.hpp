@@ -9,8 +9,6 @@
 
 namespace easydyn::soil {
 
-enum class LoadDirection { down, along_x, along_y };
-
 /// A unit force, uniformly spread over a rectangle of the surface around the origin or concentrated in a point, and
 /// where its response is wanted.
 struct FootprintRequest {

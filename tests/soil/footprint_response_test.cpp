@@ -143,8 +143,7 @@ TEST(FootprintResponse, TendsToBoussinesqAtLowFrequency) {
   const double mu = site.layers[0].shear_modulus();
   FootprintRequest request;
   request.points = {{3, 4, 0}, {3, 4, -0.5}, {3, 4, -2}, {0.6, 0.8, -0.7}, {0, 0, -1}};
-  for (const LoadDirection direction :
-       {LoadDirection::down, LoadDirection::along_x, LoadDirection::along_y}) {
+  for (const LoadDirection direction : {LoadDirection::down, LoadDirection::x, LoadDirection::y}) {
     request.direction = direction;
     const FootprintResponse u = compute_footprint_response(ground, request, w);
     for (std::size_t p = 0; p < request.points.size(); ++p) {
@@ -152,9 +151,9 @@ TEST(FootprintResponse, TendsToBoussinesqAtLowFrequency) {
       const double r = std::hypot(x, y), c = r > 0 ? x / r : 1, s = r > 0 ? y / r : 0;
       const StaticPointResponse g = compute_static_point_response(0.3, r, -z);
       Eigen::Vector3d exact(g.xz * c, g.xz * s, -g.zz);
-      if (direction == LoadDirection::along_x)
+      if (direction == LoadDirection::x)
         exact << g.sum - g.difference * (c * c - s * s), -g.difference * 2 * c * s, g.zx * c;
-      if (direction == LoadDirection::along_y)
+      if (direction == LoadDirection::y)
         exact << -g.difference * 2 * c * s, g.sum + g.difference * (c * c - s * s), g.zx * s;
       const Index i = static_cast<Index>(p);
       const Eigen::Vector3d computed(u.ux(0, i).real(), u.uy(0, i).real(), u.uz(0, i).real());
@@ -179,8 +178,8 @@ TEST(FootprintResponse, IsReciprocalBetweenTheSurfaceAndPointsBelow) {
     // A to B and B to A: the way back points the other way.
     const FootprintResponse down_below = respond(0, depth, LoadDirection::down, 1);
     const FootprintResponse below_down = respond(depth, 0, LoadDirection::down, -1);
-    const FootprintResponse along_below = respond(0, depth, LoadDirection::along_x, 1);
-    const FootprintResponse below_along = respond(depth, 0, LoadDirection::along_x, -1);
+    const FootprintResponse along_below = respond(0, depth, LoadDirection::x, 1);
+    const FootprintResponse below_along = respond(depth, 0, LoadDirection::x, -1);
     for (Index i = 0; i < w.size(); ++i) {
       const double size = std::abs(down_below.uz(i, 0));
       EXPECT_LT(std::abs(down_below.uz(i, 0) - below_down.uz(i, 0)), 1e-8 * size);
@@ -205,7 +204,7 @@ TEST(FootprintResponse, IsAlikeInCartesianWavenumbers) {
   request.width = B;
   request.points = {{4, 3, -1}, {0.05, 2.2, -1}, {-2, 7, -1}};
   const FootprintResponse down = compute_footprint_response(ground, request, w);
-  request.direction = LoadDirection::along_x;
+  request.direction = LoadDirection::x;
   const FootprintResponse along = compute_footprint_response(ground, request, w);
 
   WavenumberResponse response(ground.compute_layers(w(0)), 0, {1});
