@@ -1,5 +1,7 @@
 #include "soil/layered/layered_prediction.hpp"
 
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "soil/layered/superposition.hpp"
@@ -11,8 +13,9 @@ namespace {
 
 using Eigen::Index;
 
-double compute_ratio(double difference, double reference) {
-  return reference > 0 ? difference / reference : 0;
+// NaN where the reference is nothing beside the whole motion (a component that symmetry makes zero).
+double compute_ratio(double difference, double reference, double whole) {
+  return reference > 1e-6 * whole ? difference / reference : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -82,11 +85,12 @@ std::vector<MotionDifference> compare_with_semi_analytical(const Vibrations& v) 
   for (Index r = 0; r < v.vz.cols(); ++r) {
     MotionDifference d;
     d.receiver = v.receivers[static_cast<std::size_t>(r)].name;
+    const double whole = std::hypot(other[0].col(r).norm(), other[1].col(r).norm(), other[2].col(r).norm());
     for (int c = 0; c < 3; ++c)
-      d.l2[c] = compute_ratio((own[c].col(r) - other[c].col(r)).norm(), other[c].col(r).norm());
+      d.l2[c] = compute_ratio((own[c].col(r) - other[c].col(r)).norm(), other[c].col(r).norm(), whole);
     const Eigen::VectorXd quick = own[2].col(r) - slow.col(r),
                           other_quick = other[2].col(r) - other_slow.col(r);
-    d.dynamic_l2_z = compute_ratio((quick - other_quick).norm(), other_quick.norm());
+    d.dynamic_l2_z = compute_ratio((quick - other_quick).norm(), other_quick.norm(), whole);
     d.ppv_z[0] = compute_peak(v.vz.col(r));
     d.ppv_z[1] = compute_peak(s.vz.col(r));
     differences.push_back(d);

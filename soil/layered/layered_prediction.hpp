@@ -20,7 +20,8 @@ Vibrations predict_vibrations(const StoredMobility& stored, const SurfaceLoads& 
 SemiAnalyticalMotion compute_semi_analytical_motion(const Site& site, const SurfaceLoads& loads,
                                                     GroundDamping damping, int threads = 0);
 
-/// How far a motion is from the semi-analytical one: |v - s| / |s| over the whole record, and PPV.
+/// How far a motion is from the semi-analytical one: |v - s| / |s| over the whole record (NaN where s is zero by
+/// symmetry), and PPV.
 struct MotionDifference {
   std::string receiver;
   double l2[3] = {};        ///< of v_x, v_y, v_z, relative to the norm of s of the component

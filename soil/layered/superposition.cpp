@@ -112,6 +112,15 @@ class Superposition {
           fmt::format("superposition: responses up to {} Hz, must be at least {} Hz, the highest frequency",
                       mobility.highest_frequency, site.highest_frequency));
     }
+    for (std::size_t j = 0; j < loads.footprints.size(); ++j) {
+      const Footprint& f = loads.footprints[j];
+      if (std::abs(f.length - mobility.length) > 1e-6 || std::abs(f.width - mobility.width) > 1e-6) {
+        throw ModelError(
+            fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m, that of the "
+                        "responses",
+                        j + 1, f.length, f.width, mobility.length, mobility.width));
+      }
+    }
     SurfaceLoads limited = loads;
     const double step =
         (loads.time(loads.time.size() - 1) - loads.time(0)) / static_cast<double>(loads.time.size() - 1);
