@@ -8,12 +8,15 @@
 #include <exception>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
-#include <system_error>
+#include <utility>
 #include <vector>
 
 #include "easydyn/error.hpp"
 #include "easydyn/nearest_name.hpp"
+#include "soil/commands.hpp"
+#include "soil/layered/layered_prediction.hpp"
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
@@ -53,6 +56,7 @@ struct RunArguments {
   std::string damping = "constant";
   bool dry_run = false;
   bool full_model = false;
+  bool verify = false;
   SolverOptions options;
 };
 
@@ -86,37 +90,24 @@ void add_run_command(CLI::App& app, RunArguments& run) {
                    "Only x >= 0 and y >= 0 (one load, at the origin)");
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
+  command.add_flag("--verify", run.verify,
+                   "Add the semi-analytical solution of the layered half-space to result and report");
 }
 
-// An earlier result must not look like this run's.
-void set_aside(const fs::path& result) {
-  fs::path previous = result;
-  previous.replace_filename("vibrations.previous.h5");
-  std::error_code error;
-  if (fs::exists(result, error)) {
-    fs::rename(result, previous, error);
-    if (error) {
-      throw InputError(fmt::format("{}: cannot be renamed to {}, {}", result.string(), previous.string(),
-                                   error.message()));
-    }
+void print_comparison(const Vibrations& vibrations) {
+  fmt::print("\n{:<20} {:>12} {:>12} {:>12}   (difference from the layered half-space, L2 of v_z)\n",
+             "receiver", "PPV z", "whole", "above 2 Hz");
+  fmt::print("{:<20} {:>12} {:>12} {:>12}\n", "", "[mm/s]", "[%]", "[%]");
+  for (const MotionDifference& d : compare_with_semi_analytical(vibrations)) {
+    fmt::print("{:<20} {:>12.4g} {:>12.3g} {:>12.3g}\n", d.receiver, 1e3 * d.ppv_z[1], 100 * d.l2[2],
+               100 * d.dynamic_l2_z);
   }
 }
 
 void run(RunArguments& arguments, const std::string& command_line) {
-  const fs::path result = arguments.output / "vibrations.h5";
-  if (!arguments.dry_run) {
-    std::error_code error;
-    fs::create_directories(arguments.output, error);
-    if (!fs::is_directory(arguments.output)) {
-      throw InputError(
-          fmt::format("{}: cannot be made a folder, {}", arguments.output.string(), error.message()));
-    }
-    set_aside(result);
-  }
+  const fs::path result = arguments.dry_run ? fs::path() : prepare_result(arguments.output);
   const Site site = read_site(arguments.site);
-  for (const std::string& unusual : unusual_values(site)) {
-    fmt::print(stderr, "soil: warning: {}: {}\n", arguments.site.string(), unusual);
-  }
+  warn_of_unusual_values(arguments.site, site);
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
   const std::map<std::string, DampingModel> damping_models{
       {"constant", DampingModel::constant_ratio},
@@ -136,12 +127,20 @@ void run(RunArguments& arguments, const std::string& command_line) {
   if (arguments.dry_run) {
     return;
   }
-  const Vibrations vibrations = predict_vibrations(site, loads, solver);
+  std::optional<SemiAnalyticalMotion> semi_analytical;
+  if (arguments.verify) {  // first: what does not fit is refused in seconds
+    const std::map<std::string, GroundDamping> dampings{{"constant", GroundDamping::maxwell_body},
+                                                        {"stiffness", GroundDamping::stiffness_proportional},
+                                                        {"none", GroundDamping::none}};
+    semi_analytical = compute_semi_analytical_motion(site, loads, dampings.at(arguments.damping),
+                                                     arguments.options.threads);
+  }
+  Vibrations vibrations = predict_vibrations(site, loads, solver);
+  vibrations.semi_analytical = std::move(semi_analytical);
   write_vibrations(result, vibrations,
-                   {.program = "soil",
-                    .command = command_line,
-                    .convention = "SI units; x along the track, y to the left, z up; footprints downward"});
+                   {.program = "soil", .command = command_line, .convention = result_convention});
   print_indicators(stdout, vibrations);
+  if (arguments.verify) print_comparison(vibrations);
   fmt::print("\n{}\n", result.string());
 }
 
@@ -158,10 +157,10 @@ void write_report(const fs::path& folder) {
 
 // Empty if the first word may be a command.
 std::string find_fault_of_command(const std::string& word) {
-  const std::vector<std::string> commands = {"run", "report"};
+  const std::vector<std::string> commands = {"run", "mobility", "predict", "report"};
   if (word.starts_with('-') || std::find(commands.begin(), commands.end(), word) != commands.end()) return {};
   const std::string nearest = find_nearest(word, commands);
-  return fmt::format("no command \"{}\"{}; known: run, report", word,
+  return fmt::format("no command \"{}\"{}; known: run, mobility, predict, report", word,
                      nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?");
 }
 
@@ -176,8 +175,7 @@ int run_program(int argc, char** argv) {
   app.set_version_flag("--version", "soil " + results::library_version());
   app.require_subcommand(1);
   app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return fmt::format("soil: {}\nsoil --help, soil run --help and soil report --help explain the options.\n",
-                       error.what());
+    return fmt::format("soil: {}\nsoil --help and soil COMMAND --help explain the options.\n", error.what());
   });
   app.footer(
       "\nExample:\n  soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output "
@@ -186,6 +184,7 @@ int run_program(int argc, char** argv) {
   RunArguments arguments;
   fs::path report_folder;
   add_run_command(app, arguments);
+  const Action mobility = add_mobility_command(app), predict = add_predict_command(app);
   add_report_command(app, report_folder);
   try {
     app.parse(argc, argv);
@@ -195,6 +194,10 @@ int run_program(int argc, char** argv) {
   try {
     if (app.got_subcommand("run")) {
       run(arguments, results::join_command_line(argc, argv));
+    } else if (app.got_subcommand("mobility")) {
+      mobility(results::join_command_line(argc, argv));
+    } else if (app.got_subcommand("predict")) {
+      predict(results::join_command_line(argc, argv));
     } else {
       write_report(report_folder);
     }

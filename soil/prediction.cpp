@@ -58,21 +58,6 @@ std::string origin_of_option(const T& value, const T& standard) {
   return value == standard ? "default" : "option";
 }
 
-void add_settings(std::vector<Parameter>& rows, const Site& site) {
-  const Site standard;
-  const auto add = [&](const char* name, const char* unit, const char* key, double Site::*value) {
-    const char* const origin = site.given.contains(key)         ? "site file"
-                               : site.*value == standard.*value ? "default"
-                                                                : "caller";
-    rows.push_back({"solver", name, site.*value, unit, origin});
-  };
-  add("highest frequency", "Hz", "highest_frequency", &Site::highest_frequency);
-  add("frequency of the damping ratios and wave speeds", "Hz", "damping_frequency", &Site::damping_frequency);
-  add("points per shortest wavelength", "1", "points_per_wavelength", &Site::points_per_wavelength);
-  add("undamped ground around loads and receivers", "m", "margin", &Site::margin);
-  add("length over which the loads fade out", "m", "taper_length", &Site::taper_length);
-}
-
 // Numbers stand for choices; the name says which.
 void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOptions& options) {
   const SolverOptions standard;
@@ -100,7 +85,7 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
 }
 
 void add_solver(std::vector<Parameter>& rows, const Site& site, WaveSolver& solver) {
-  add_settings(rows, site);
+  add_settings(rows, site, true);
   add_options(rows, site, solver.options());
   const RunSummary summary = solver.compute_summary();
   const Lattice& lattice = solver.lattice();
@@ -152,11 +137,26 @@ WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const Solver
   return WaveSolver(site, limited, options);
 }
 
-Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
-                              std::FILE* out) {
+void add_settings(std::vector<Parameter>& rows, const Site& site, bool has_mesh) {
+  const Site standard;
+  const auto add = [&](const char* name, const char* unit, const char* key, double Site::*value) {
+    const char* const origin = site.given.contains(key)         ? "site file"
+                               : site.*value == standard.*value ? "default"
+                                                                : "caller";
+    rows.push_back({"solver", name, site.*value, unit, origin});
+  };
+  add("highest frequency", "Hz", "highest_frequency", &Site::highest_frequency);
+  add("frequency of the damping ratios and wave speeds", "Hz", "damping_frequency", &Site::damping_frequency);
+  if (has_mesh) {
+    add("points per shortest wavelength", "1", "points_per_wavelength", &Site::points_per_wavelength);
+    add("undamped ground around loads and receivers", "m", "margin", &Site::margin);
+  }
+  add("length over which the loads fade out", "m", "taper_length", &Site::taper_length);
+}
+
+Vibrations describe_prediction(const Site& site, const SurfaceLoads& loads) {
   Vibrations v;
   add_site(v.parameters, site);
-  add_solver(v.parameters, site, solver);
   v.receivers = site.receivers;
   v.highest_frequency = site.highest_frequency;
   v.site_text = site.text;
@@ -164,7 +164,23 @@ Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveS
   for (Eigen::Index j = 0; j < v.footprint_x.size(); ++j) {
     v.footprint_x(j) = loads.footprints[static_cast<std::size_t>(j)].x;
   }
+  return v;
+}
 
+void set_motion(Vibrations& v, GroundMotion motion) {
+  v.time = std::move(motion.time);
+  v.vx = std::move(motion.vx);
+  v.vy = std::move(motion.vy);
+  v.vz = std::move(motion.vz);
+  v.footprint_displacement = std::move(motion.footprint_displacement);
+  v.footprint_taper = std::move(motion.taper);
+  update_indicators(v);
+}
+
+Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
+                              std::FILE* out) {
+  Vibrations v = describe_prediction(site, loads);
+  add_solver(v.parameters, site, solver);
   std::unique_ptr<results::Progress> progress;
   if (out) {
     progress = std::make_unique<results::Progress>("waves", out);
@@ -177,13 +193,7 @@ Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveS
   if (progress) {
     progress->finish();
   }
-  v.time = std::move(motion.time);
-  v.vx = std::move(motion.vx);
-  v.vy = std::move(motion.vy);
-  v.vz = std::move(motion.vz);
-  v.footprint_displacement = std::move(motion.footprint_displacement);
-  v.footprint_taper = std::move(motion.taper);
-  update_indicators(v);
+  set_motion(v, std::move(motion));
   return v;
 }
 

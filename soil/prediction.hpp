@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdio>
+#include <vector>
 
 #include "soil/site.hpp"
 #include "soil/surface_loads.hpp"
@@ -19,6 +20,15 @@ WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const Solver
 /// @throws SolverError if the motion grows without bound
 Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
                               std::FILE* out = stdout);
+
+/// Everything but the motion and what depends on the solver: receivers, footprints, site.
+Vibrations describe_prediction(const Site& site, const SurfaceLoads& loads);
+
+/// Rows of the table of parameters for the settings of the site file; `has_mesh`: with those of a mesh.
+void add_settings(std::vector<Parameter>& rows, const Site& site, bool has_mesh);
+
+/// Takes the motion over and draws up the indicators.
+void set_motion(Vibrations& vibrations, GroundMotion motion);
 
 /// Mesh, memory, steps and expected time, before a run.
 void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loads, WaveSolver& solver);

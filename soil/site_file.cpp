@@ -200,8 +200,12 @@ void read_settings(const TomlTable& root, Site& site) {
 }  // namespace
 
 Site read_site(const std::filesystem::path& path) {
+  return parse_site(read_text_file(path), path);
+}
+
+Site parse_site(const std::string& text, const std::filesystem::path& path) {
   Site site;
-  site.text = read_text_file(path);
+  site.text = text;
   const toml::table parsed = parse(site.text, path);
   const TomlTable root(path, "", parsed);
   root.refuse_other_keys({"name", "source", "layer", "block", "receiver", "solver", "loads"});

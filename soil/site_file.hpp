@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "soil/site.hpp"
 
@@ -47,5 +48,8 @@ namespace easydyn::soil {
 /// @throws InputError `file:line:column: object: key = value, must be ...`; an unknown key is refused
 ///         with the nearest known one
 Site read_site(const std::filesystem::path& path);
+
+/// The same from the text of a site file, e.g. as a result keeps it; `path` is what error messages name.
+Site parse_site(const std::string& text, const std::filesystem::path& path);
 
 }  // namespace easydyn::soil

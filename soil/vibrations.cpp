@@ -30,6 +30,13 @@ void check_sizes(const Vibrations& v) {
   require_shape("velocity z", v.vz, nt, nr);
   require_shape("footprint displacement", v.footprint_displacement, nt, nl);
   require_shape("footprint taper", v.footprint_taper, nl, 1);
+  if (v.semi_analytical) {
+    const SemiAnalyticalMotion& s = *v.semi_analytical;
+    require_shape("semi-analytical velocity x", s.vx, s.time.size(), nr);
+    require_shape("semi-analytical velocity y", s.vy, s.time.size(), nr);
+    require_shape("semi-analytical velocity z", s.vz, s.time.size(), nr);
+    require_shape("semi-analytical footprint displacement", s.footprint_displacement, s.time.size(), nl);
+  }
   if (v.indicators.size() != v.receivers.size()) {
     throw ModelError(
         fmt::format("vibrations: indicators of {} receivers, must be {}", v.indicators.size(), nr));
@@ -91,6 +98,34 @@ void read_indicators(const results::ResultReader& reader, Vibrations& v) {
   }
 }
 
+void write_semi_analytical(results::ResultFile& file, const SemiAnalyticalMotion& s) {
+  const std::string axes = "x along the track, y to the left, z up";
+  file.write_vector("/semi_analytical/time", s.time,
+                    {.units = "s", .description = "time of the semi-analytical motion", .frame = "scalar"});
+  const std::pair<const char*, const Eigen::MatrixXd*> components[] = {
+      {"x", &s.vx}, {"y", &s.vy}, {"z", &s.vz}};
+  for (const auto& [axis, values] : components) {
+    file.write_matrix(fmt::format("/semi_analytical/velocity/{}", axis), *values,
+                      {.units = "m/s",
+                       .description = fmt::format("ground velocity along {}, layered half-space", axis),
+                       .frame = axes});
+  }
+  file.write_matrix("/semi_analytical/footprint_displacement", s.footprint_displacement,
+                    {.units = "m",
+                     .description = "soil displacement averaged over each footprint, layered half-space",
+                     .frame = "downward"});
+}
+
+void read_semi_analytical(const results::ResultReader& reader, Vibrations& v) {
+  if (!reader.has("/semi_analytical/time")) return;
+  v.semi_analytical = {
+      .time = reader.read_vector("/semi_analytical/time"),
+      .vx = reader.read_matrix("/semi_analytical/velocity/x"),
+      .vy = reader.read_matrix("/semi_analytical/velocity/y"),
+      .vz = reader.read_matrix("/semi_analytical/velocity/z"),
+      .footprint_displacement = reader.read_matrix("/semi_analytical/footprint_displacement")};
+}
+
 }  // namespace
 
 void update_indicators(Vibrations& v) {
@@ -134,6 +169,7 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& v,
   file.write_vector(
       "/footprint/taper", v.footprint_taper,
       {.units = "1", .description = "factor by which each load was tapered", .frame = "scalar"});
+  if (v.semi_analytical) write_semi_analytical(file, *v.semi_analytical);
   file.write_text("/parameters", visu::to_json(v.parameters),
                   "JSON array of {group, name, value, unit, source}");
   file.write_text("/site", v.site_text, "the site file, as read");
@@ -150,6 +186,7 @@ Vibrations read_vibrations(const std::filesystem::path& path) {
   v.footprint_x = reader.read_vector("/footprint/x");
   v.footprint_displacement = reader.read_matrix("/footprint/displacement");
   v.footprint_taper = reader.read_vector("/footprint/taper");
+  read_semi_analytical(reader, v);
   v.highest_frequency = reader.read_number_attribute("highest_frequency");
   v.parameters = visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   v.site_text = reader.read_text("/site");

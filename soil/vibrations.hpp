@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,13 @@
 #include "soil/site.hpp"
 
 namespace easydyn::soil {
+
+/// The same motion from the semi-analytical layered half-space, at times of its own: nt times.
+struct SemiAnalyticalMotion {
+  Eigen::VectorXd time;                    ///< nt [s], uniform
+  Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
+  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], downward
+};
 
 /// What a prediction says: nt times, nr receivers, nl loaded footprints.
 struct Vibrations {
@@ -24,6 +32,7 @@ struct Vibrations {
   double highest_frequency = 0;            ///< [Hz]; nothing above it is claimed (roll-off to 1.25 x)
   std::vector<Parameter> parameters;       ///< site, mesh, boundary, time step
   std::string site_text;                   ///< the site file, as read
+  std::optional<SemiAnalyticalMotion> semi_analytical;  ///< for comparison
 };
 
 /// Fills `indicators` from the velocities.

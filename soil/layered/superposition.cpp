@@ -21,7 +21,6 @@ namespace {
 
 using Eigen::Index;
 constexpr double pi = std::numbers::pi;
-constexpr int refinement = 3;        // steps of the output in a step of the responses
 constexpr double unload_time = 0.5;  // [s] after the record, over which held loads go back to zero
 constexpr double tolerance = 1e-3;   // [m] to which distances are met
 
@@ -98,14 +97,29 @@ Eigen::MatrixXd sample_loads(const LoadHistory& history, const Eigen::VectorXd& 
 
 class Superposition {
  public:
-  Superposition(const Mobility& mobility, const Site& site, const SurfaceLoads& loads, double preload_time,
-                int threads)
-      : mobility_(mobility), site_(site), loads_(loads) {
-    threads_ = threads > 0 ? threads : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  Superposition(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
+                const SuperpositionOptions& options)
+      : mobility_(mobility), site_(site), loads_(loads), refinement_(options.samples_per_period / 4) {
+    const double preload_time = options.preload_time;
+    if (options.samples_per_period < 4 || options.samples_per_period % 4 != 0) {
+      throw ModelError(fmt::format("superposition: samples_per_period = {}, must be a multiple of 4, > 0",
+                                   options.samples_per_period));
+    }
+    threads_ = options.threads > 0 ? options.threads
+                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     if (mobility.highest_frequency < site.highest_frequency * (1 - 1e-9)) {
       throw ModelError(
           fmt::format("superposition: responses up to {} Hz, must be at least {} Hz, the highest frequency",
                       mobility.highest_frequency, site.highest_frequency));
+    }
+    for (std::size_t j = 0; j < loads.footprints.size(); ++j) {
+      const Footprint& f = loads.footprints[j];
+      if (std::abs(f.length - mobility.length) > 1e-6 || std::abs(f.width - mobility.width) > 1e-6) {
+        throw ModelError(
+            fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m, that of the "
+                        "responses",
+                        j + 1, f.length, f.width, mobility.length, mobility.width));
+      }
     }
     SurfaceLoads limited = loads;
     const double step =
@@ -137,9 +151,9 @@ class Superposition {
   }
 
   GroundMotion run() {
-    const auto outputs = static_cast<Index>(std::floor(duration_ / mobility_.step * refinement + 1e-9)) + 1;
+    const auto outputs = static_cast<Index>(std::floor(duration_ / mobility_.step * refinement_ + 1e-9)) + 1;
     motion_.time = Eigen::VectorXd::LinSpaced(
-        outputs, first_, first_ + static_cast<double>(outputs - 1) * mobility_.step / refinement);
+        outputs, first_, first_ + static_cast<double>(outputs - 1) * mobility_.step / refinement_);
     add_receivers();
     add_footprints();
     return std::move(motion_);
@@ -220,7 +234,7 @@ class Superposition {
   Eigen::MatrixXd transform_back(const Eigen::MatrixXcd& spectra) const {
     Eigen::FFT<double> fft;
     fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-    const Index length = refinement * length_;
+    const Index length = refinement_ * length_;
     Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(length / 2 + 1);
     Eigen::VectorXd signal(length);
     Eigen::MatrixXd signals(motion_.time.size(), spectra.cols());
@@ -228,7 +242,7 @@ class Superposition {
       padded.head(count_) = spectra.col(c);
       padded(0) = padded(0).real();
       fft.inv(signal.data(), padded.data(), static_cast<int>(length));
-      signals.col(c) = refinement * signal.segment(refinement * before_, signals.rows());
+      signals.col(c) = refinement_ * signal.segment(refinement_ * before_, signals.rows());
     }
     return signals;
   }
@@ -236,6 +250,7 @@ class Superposition {
   const Mobility& mobility_;
   const Site& site_;
   const SurfaceLoads& loads_;
+  int refinement_;  // steps of the output in a step of the responses
   int threads_ = 1;
   double first_ = 0, duration_ = 0;
   Index before_ = 0, length_ = 0, count_ = 0;
@@ -246,8 +261,8 @@ class Superposition {
 }  // namespace
 
 GroundMotion superpose(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
-                       double preload_time, int threads) {
-  return Superposition(mobility, site, loads, preload_time, threads).run();
+                       const SuperpositionOptions& options) {
+  return Superposition(mobility, site, loads, options).run();
 }
 
 }  // namespace easydyn::soil

@@ -7,16 +7,22 @@
 
 namespace easydyn::soil {
 
+struct SuperpositionOptions {
+  double preload_time = 0.5;    ///< [s] before the first load sample, as SolverOptions::preload_time
+  int samples_per_period = 12;  ///< of the highest frequency, in the record; a multiple of 4
+  int threads = 0;              ///< 0: one per core
+};
+
 /// Ground motion under many footprints from the responses to one:
 ///
 ///   u(x, t) = sum_j taper_j int h(x - x_j, t - s) F_j(s) ds
 ///
 /// by FFT. The loads are treated as by the finite elements: limited by limit_band(), brought in over `preload_time`
 /// where they start away from zero, held after their end, faded out at both ends of the track by compute_taper(). The
-/// record begins with the loads and ends Site::decay_time after them (or lasts Site::duration); its step is 1 / (12
-/// highest_frequency). GroundMotion::energy stays empty.
+/// record begins with the loads and ends Site::decay_time after them (or lasts Site::duration).
+/// GroundMotion::energy stays empty.
 /// @throws ModelError if a distance is missing in the mobility, or loads and site do not fit it
 GroundMotion superpose(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
-                       double preload_time = 0.5, int threads = 0);
+                       const SuperpositionOptions& options = {});
 
 }  // namespace easydyn::soil

@@ -96,6 +96,9 @@ std::string damping_text(const ResultReader& ground) {
   if (*model == 1)
     return fmt::format(
         "material damping grows in proportion to frequency from the ratios of the site file at {}", at);
+  if (*model == 3)
+    return fmt::format(
+        "material damping keeps the ratios of the site file at all frequencies; wave speeds hold at {}", at);
   return fmt::format(
       "material damping nearly keeps the ratios of the site file, from a tenth of the highest frequency to "
       "it; "
@@ -194,6 +197,7 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
     report::add_track_section(report, *track);
   }
   if (ground) report::add_ground_section(report, *ground);
+  if (ground) report::add_verification_section(report, *ground);
   if (comparison) report::add_recoupling_section(report, *comparison);
   if (!no_comparison.empty()) report.add_paragraph("Both steps are not compared: " + no_comparison + ".");
 

@@ -22,6 +22,9 @@ void add_track_section(visu::Report& report, const results::ResultReader& track)
 void add_ground_section(visu::Report& report, const results::ResultReader& ground);
 std::vector<visu::KeyFigure> ground_key_figures(const results::ResultReader& ground);
 
+/// Step 2 against the semi-analytical motion, if the file holds it (`soil run --verify`).
+void add_verification_section(visu::Report& report, const results::ResultReader& ground);
+
 /// Where both steps meet: displacement of the soil under each sleeper against the track's foundation.
 struct Comparison {
   Eigen::VectorXd track_time, soil_time;  ///< [s]

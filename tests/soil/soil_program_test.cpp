@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "soil/layered/layered_prediction.hpp"
 #include "soil/surface_loads.hpp"
 #include "soil/vibrations.hpp"
 #include "tests/temporary_folder.hpp"
@@ -83,11 +84,11 @@ class SoilProgram : public ::testing::Test {
     return call("run " + (folder_ / "site.toml").string() + " " + (folder_ / "loads.h5").string() +
                 " --output " + (folder_ / "out").string() + " " + options);
   }
-  Outcome run_replaced(const std::string& from, const std::string& to) {
+  Outcome run_replaced(const std::string& from, const std::string& to, const std::string& options = "") {
     std::string site = tiny_site;
     const std::size_t at = site.find(from);
     EXPECT_NE(at, std::string::npos);
-    return run(site.replace(at, from.size(), to));
+    return run(site.replace(at, from.size(), to), options);
   }
 
   bool has_result() const { return std::filesystem::exists(folder_ / "out/vibrations.h5"); }
@@ -125,6 +126,51 @@ TEST_F(SoilProgram, ComputesVibrationsAndReportsThem) {
   const Outcome report = call("report " + (folder_ / "out").string());
   EXPECT_EQ(report.status, 0) << report.err;
   EXPECT_THAT(testing::read_whole_file(folder_ / "out/report.html"), HasSubstr("</html>"));
+}
+
+TEST_F(SoilProgram, PredictsFromImpulseResponsesAsFromTheSite) {
+  folder_.write("site.toml", tiny_site);
+  const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();
+  const std::string file = (folder_ / "mobility.h5").string();
+  const Outcome mobility = call("mobility " + site + " --loads " + loads + " --output " + file);
+  ASSERT_EQ(mobility.status, 0) << mobility.err;
+  EXPECT_THAT(mobility.out,
+              AllOf(HasSubstr("2 m x 2.5 m"), HasSubstr("2 distances of receivers, 1 of footprints")));
+  const Outcome stored = call("predict " + file + " " + loads + " --output " + (folder_ / "out").string());
+  ASSERT_EQ(stored.status, 0) << stored.err;
+  EXPECT_THAT(stored.out, AllOf(HasSubstr("PPV"), HasSubstr("10 m"), HasSubstr("out/vibrations.h5")));
+  const Outcome direct = call("predict " + site + " " + loads + " --output " + (folder_ / "direct").string());
+  ASSERT_EQ(direct.status, 0) << direct.err;
+  const Vibrations a = read_vibrations(folder_ / "out/vibrations.h5"),
+                   b = read_vibrations(folder_ / "direct/vibrations.h5");
+  EXPECT_EQ(a.vz, b.vz);
+  EXPECT_EQ(a.site_text, tiny_site);
+  EXPECT_GT(a.footprint_displacement.maxCoeff(), 0);
+
+  // Responses by the size of the footprint alone; loads of another size are refused.
+  const std::string other = (folder_ / "other.h5").string();
+  ASSERT_EQ(call("mobility " + site + " --footprint 1 2.5 --output " + other).status, 0);
+  std::filesystem::remove_all(folder_ / "out");
+  expect_refused(call("predict " + other + " " + loads + " --output " + (folder_ / "out").string()),
+                 "footprint 1 is 2 m x 2.5 m, must be 1 m x 2.5 m");
+  expect_refused(call("mobility " + site), "no footprint: give --loads");
+}
+
+TEST_F(SoilProgram, VerifiesFiniteElementsByTheLayeredHalfSpace) {
+  const Outcome outcome = run_replaced("margin = 0", "margin = 30", "--verify");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("difference from the layered half-space"));
+  const Vibrations v = read_vibrations(folder_ / "out/vibrations.h5");
+  ASSERT_TRUE(v.semi_analytical);
+  // A coarse mesh, long waves and a boundary near by: at 10 m, less than an element away, nothing is claimed.
+  const auto differences = compare_with_semi_analytical(v);
+  ASSERT_EQ(differences.size(), 2u);
+  EXPECT_LT(differences[1].l2[2], 0.1);           // measured: 0.027
+  EXPECT_TRUE(std::isnan(differences[1].l2[0]));  // x = 0 by symmetry
+  const Outcome report = call("report " + (folder_ / "out").string());
+  ASSERT_EQ(report.status, 0) << report.err;
+  EXPECT_THAT(testing::read_whole_file(folder_ / "out/report.html"),
+              HasSubstr("Check: finite elements against the semi-analytical solution"));
 }
 
 TEST_F(SoilProgram, StopsBeforeTheRunWhenAsked) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+
+#include "easydyn/results/result_file.hpp"
+#include "soil/layered/mobility.hpp"
+#include "soil/site.hpp"
+
+namespace easydyn::soil {
+
+/// Impulse responses and the site that they belong to: what `mobility.h5` holds (docs/formats.md).
+struct StoredMobility {
+  Mobility mobility;
+  Site site;
+  GroundDamping damping = GroundDamping::maxwell_body;
+  std::string method;  ///< how the responses were computed, e.g. "layered half-space"
+};
+
+/// @throws ModelError if sizes disagree or a value is not finite; InputError if the file cannot be written
+void write_mobility(const std::filesystem::path& path, const StoredMobility& stored,
+                    const results::Provenance& provenance);
+
+/// @throws InputError naming the file, the dataset and what is wrong
+StoredMobility read_mobility(const std::filesystem::path& path);
+
+/// Damping by the name that options and files use: none, stiffness, constant (the finite elements' body) or
+/// constant-q. @throws InputError for another name
+GroundDamping find_ground_damping(const std::string& name);
+std::string name_of(GroundDamping damping);
+
+}  // namespace easydyn::soil

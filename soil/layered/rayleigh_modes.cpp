@@ -1,0 +1,121 @@
+#include "soil/layered/rayleigh_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "easydyn/require.hpp"
+#include "soil/layered/wavenumber_response.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+// Surface impedance of the elastic ground, scaled; its determinant is real below the half-space's shear wave speed.
+class Secular {
+ public:
+  Secular(const LayeredGround& ground, double w)
+      : layers_(make_elastic(ground, w)), response_(layers_, 0, {}) {}
+
+  double operator()(double k) { return response_.compute_surface_determinant(k).real(); }
+
+  // Wavenumbers of the shear waves.
+  double slowest() const {
+    return extreme([](double a, double b) { return std::max(a, b); });
+  }
+  double half_space() const { return std::sqrt(layers_.back().ks2.real()); }
+  // Phase that a wave collects in the layers, over 1 / k.
+  double depth() const {
+    double sum = 0;
+    for (std::size_t i = 0; i + 1 < layers_.size(); ++i) sum += layers_[i].thickness;
+    return sum;
+  }
+
+ private:
+  static std::vector<LayerAtFrequency> make_elastic(const LayeredGround& ground, double w) {
+    std::vector<LayerAtFrequency> layers = ground.compute_layers(w);
+    for (LayerAtFrequency& layer : layers) {
+      layer.ks2 = (layer.ks2 * layer.mu).real() / layer.mu.real();
+      layer.mu = layer.mu.real();
+    }
+    return layers;
+  }
+  template <typename F>
+  double extreme(F choose) const {
+    double value = std::sqrt(layers_.front().ks2.real());
+    for (const LayerAtFrequency& layer : layers_) value = choose(value, std::sqrt(layer.ks2.real()));
+    return value;
+  }
+
+  std::vector<LayerAtFrequency> layers_;
+  WavenumberResponse response_;
+};
+
+// Bisection between opposite signs; NaN where the sign changes through infinity.
+double find_root(Secular& D, double a, double b, double at_a, double at_b) {
+  const double limit = std::max(std::abs(at_a), std::abs(at_b));
+  double value = at_a;
+  for (int pass = 0; pass < 200 && b - a > 4e-16 * b; ++pass) {
+    const double middle = (a + b) / 2;
+    value = D(middle);
+    if ((value > 0) == (at_a > 0)) {
+      a = middle;
+    } else {
+      b = middle;
+    }
+  }
+  return std::abs(value) <= limit ? (a + b) / 2 : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+std::vector<double> compute_rayleigh_speeds(const LayeredGround& ground, double frequency) {
+  require_positive("Rayleigh modes", "frequency", frequency, "Hz");
+  const double w = 2 * pi * frequency;
+  Secular D(ground, w);
+  // From just faster than the half-space's shear waves (no mode) to slower than any Rayleigh wave, c_R > 0.874 c_S.
+  const double low = D.half_space() * (1 + 1e-9), high = 1.15 * D.slowest();
+  // Modes are about pi / depth apart in the vertical wavenumber: many steps to each.
+  const int steps = 200 + static_cast<int>(60 * high * D.depth());
+  std::vector<double> speeds;
+  double k = high, at_k = D(k);
+  for (int i = 1; i <= steps; ++i) {
+    // Evenly in the vertical wavenumber of the half-space, which crowds near its shear waves.
+    const double share = 1 - static_cast<double>(i) / steps;
+    const double next = std::sqrt(low * low + share * share * (high * high - low * low)), at_next = D(next);
+    if ((at_k > 0) != (at_next > 0)) {
+      const double root = find_root(D, next, k, at_next, at_k);
+      if (std::isfinite(root)) speeds.push_back(w / root);
+    }
+    k = next;
+    at_k = at_next;
+  }
+  return speeds;
+}
+
+double find_radiation_frequency(const LayeredGround& ground, double speed, double lowest, double highest) {
+  require_positive("Rayleigh modes", "speed", speed, "m/s");
+  const auto is_slow = [&](double f) {
+    const std::vector<double> speeds = compute_rayleigh_speeds(ground, f);
+    return !speeds.empty() && speeds.front() <= speed;
+  };
+  if (is_slow(lowest)) return lowest;
+  constexpr int steps = 100;
+  double before = lowest;
+  for (int i = 1; i <= steps; ++i) {
+    double f = lowest * std::pow(highest / lowest, static_cast<double>(i) / steps);
+    if (is_slow(f)) {
+      while (f - before > 1e-6 * f) {
+        const double middle = (before + f) / 2;
+        (is_slow(middle) ? f : before) = middle;
+      }
+      return f;
+    }
+    before = f;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace easydyn::soil
