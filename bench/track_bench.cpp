@@ -11,6 +11,7 @@
 #include "easydyn/easydyn.hpp"
 #include "easydyn/sim/banded_cholesky.hpp"
 #include "examples/passage_program/train_on_track.hpp"
+#include "track/irregularity.hpp"
 #include "vehicles/t2000_like.hpp"
 #include "vehicles/thalys_like.hpp"
 
@@ -18,7 +19,14 @@ using namespace easydyn;
 
 namespace {
 
-/// A passage over a rail step, from its quasi-static start.
+/// Unevenness of a high-speed line everywhere, as the programs have it.
+std::shared_ptr<const track::Profile> rough_rail(double track_length) {
+  return std::make_shared<track::Irregularity>(
+      track::braun_hellenbroich(),
+      track::IrregularityOptions{.begin = -track_length, .end = track_length, .seed = 1});
+}
+
+/// A passage over a rough rail, from its quasi-static start.
 struct Passage {
   Passage(const vehicles::RailVehicle& vehicle, const track::TrackData& data, double speed, double window_,
           double track_length, double step_)
@@ -27,7 +35,7 @@ struct Passage {
         system(vehicle,
                track::TrackModel(data, static_cast<int>(track_length / data.sleeper_spacing),
                                  -0.5 * track_length),
-               -0.25 * track_length, speed, std::make_shared<track::StepProfile>(0, 0.3e-3)) {}
+               -0.25 * track_length, speed, rough_rail(track_length)) {}
   State start() { return solve_quasi_static_motion(system, system.initial_state(), 2e-3); }
   track::PassageStepper stepper() {
     return {system, system.track, system.contacts(), start(), {.step = step, .window = window}};

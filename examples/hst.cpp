@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
   hst.irregularity = "braun_hellenbroich";
   hst.time_step = 2e-4;             // s
   hst.loaded = 75;                  // m: the ground is loaded from -75 m to 75 m about the receivers
+  hst.margin = 32.5;                // m: a window of 260 m
   hst.approach = 10;                // m
   hst.rayleigh_speed = 0.932 * 80;  // m/s: cs 80 m/s, nu 0.33 (examples/sites/hst.toml)
   hst.heights = {.floor = 1.1, .width = 2.8};

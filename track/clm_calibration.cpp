@@ -292,7 +292,8 @@ ClmFit calibrate_clm(const GroundCompliance& ground, const ClmFitOptions& option
   fit.rms_00 = std::sqrt(squares_00 / double(nf));
   fit.rms_01 = std::sqrt(squares_01 / double(nf));
   const std::string source = fmt::format(
-      "C: fit to {}, {}, {:g}-{:g} Hz, rms error {:.0f} % of H_00 and {:.0f} % of H_01 (of static H_00)",
+      "C: fit to {}, {}, {:g}-{:g} Hz, rms error {:.0f} % of H_00 and {:.0f} % of H_01 (of H_00 at the "
+      "lowest frequency)",
       ground.source, fit.system, fit.frequency[0], fit.frequency[nf - 1], 100 * fit.rms_00, 100 * fit.rms_01);
   fit.clm = {{m_f, source}, {k_f, source}, {d_f, source}, {k_c, source}, {d_c, source}};
   validate(Foundation(fit.clm), "calibrated CLM");

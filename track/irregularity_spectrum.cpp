@@ -143,9 +143,9 @@ IrregularitySpectrum braun_hellenbroich() {
   return {name,
           SpectralVariable::radian_per_metre,
           [](double W) { return S0 * std::pow(W / W0, -3.5); },
-          3,
+          0.5,
           150,
-          std::string("M-h") + assumed_band,
+          "M-h; band 0.5-150 m assumed, so that a high-speed train feels it up to 150 Hz",
           {{name, "S0", S0, "m^3", "M-h"}, {name, "W0", W0, "rad/m", "M-h"}}};
 }
 

@@ -79,7 +79,7 @@ IrregularitySpectrum fra_class(int track_class);
 IrregularitySpectrum sncf_good();
 IrregularitySpectrum sncf_poor();
 
-/// Braun & Hellenbroich, S(W) = S0 (W/W0)^-3.5 per rad/m, W0 = 1 rad/m, S0 = 1e-8 m^3 (M-h). Band 3-150 m:
+/// Braun & Hellenbroich, S(W) = S0 (W/W0)^-3.5 per rad/m, W0 = 1 rad/m, S0 = 1e-8 m^3 (M-h). Band 0.5-150 m:
 /// assumed, as for ERRI B176; the formula has no bound at long waves.
 IrregularitySpectrum braun_hellenbroich();
 

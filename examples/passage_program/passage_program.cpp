@@ -37,6 +37,7 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   options.step_height = program.step_height;
   options.irregularity = program.irregularity;
   options.time_step = program.time_step;
+  options.loaded = program.loaded;
   options.output = "results/" + program.name;
   std::vector<std::string> spectra = track::irregularity_spectrum_names();
   spectra.insert(spectra.begin(), "none");
@@ -67,13 +68,17 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
       ->check(in_range(0, 200));
   app.add_option("--detail", options.detail, "what is known of the train")
       ->capture_default_str()
-      ->check(CLI::IsMember({"full", "three-masses", "quarter", "wheel-pair"}));
+      ->check(CLI::IsMember({"full", "three-masses", "quarter", "wheel-pair", "moving-loads"}));
   app.add_option("--foundation", options.foundation, "what the ballast rests on")
       ->capture_default_str()
       ->check(CLI::IsMember({"rigid", "winkler", "winkler-mass", "clm"}));
   app.add_option("--time-step", options.time_step, "of Newmark's method, 1e-6 to 1e-3 [s]")
       ->capture_default_str()
       ->check(in_range(1e-6, 1e-3));
+  app.add_option("--loaded", options.loaded,
+                 "the ground is loaded from -LOADED to LOADED about x = 0, 5 to 1000 [m]")
+      ->capture_default_str()
+      ->check(in_range(5, 1000));
   app.add_option("--output", options.output, "folder of the results")->capture_default_str();
   try {
     app.parse(argc, argv);

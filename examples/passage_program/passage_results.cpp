@@ -67,7 +67,7 @@ std::vector<Parameter> list_parameters(const PassageProgram& program, const Pass
     parameters.push_back({"run", "seed of the irregularity " + options.irregularity, double(options.seed),
                           "1", track::irregularity_spectrum(options.irregularity).source()});
   parameters.push_back({"run", "way driven before the recording", run.course.run_in, "m", "choice"});
-  parameters.push_back({"run", "half length of the loaded ground", program.loaded, "m", "choice"});
+  parameters.push_back({"run", "half length of the loaded ground", options.loaded, "m", "option --loaded"});
   if (options.wheel_flat > 0)
     parameters.push_back({"run", "length of the flat on every wheel pair", options.wheel_flat * mm, "m",
                           "option --wheel-flat, rounded"});
@@ -118,7 +118,7 @@ int run_passage(const PassageProgram& program, const PassageProgramOptions& opti
   fmt::print("{}: {}\n", program.name, description);
   fs::create_directories(options.output);  // before the work, in case it cannot be
   std::vector<std::string> warnings = vehicles::unusual_values(program.vehicle);
-  for (const std::string& warning : run.warn_of_speed()) warnings.push_back(warning);
+  for (const std::string& warning : run.warn()) warnings.push_back(warning);
   for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", program.name, warning);
   fmt::print(
       "{}: {} bays of track, {:.0f} m of them at a time, {} coordinates of bodies, {:.2f} s in steps of {} "
@@ -157,7 +157,7 @@ int run_passage(const PassageProgram& program, const PassageProgramOptions& opti
   loads.time = run.passage.time;
   std::vector<Eigen::Index> handed_over;
   for (Eigen::Index j = 0; j < run.passage.sleeper_x.size(); ++j) {
-    if (std::abs(run.passage.sleeper_x[j]) > program.loaded) continue;
+    if (std::abs(run.passage.sleeper_x[j]) > options.loaded) continue;
     handed_over.push_back(j);
     loads.footprints.push_back({.x = run.passage.sleeper_x[j],
                                 .y = 0,

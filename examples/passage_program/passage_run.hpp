@@ -22,6 +22,7 @@ struct PassageProgramOptions {
   double wheel_flat = 0;  // length [mm]
   std::string detail = "full", foundation = "clm";
   double time_step = 1e-4;  // [s]
+  double loaded = 14;       // half the length [m]
   std::filesystem::path output;
 };
 
@@ -48,12 +49,15 @@ struct PassageRun {
   double energy_imbalance() const;  ///< largest error of the balance over the work supplied
 
   Eigen::VectorXd static_loads() const;  ///< of the contacts [N]
-  /// Speeds near those at which waves in the track or in the ground keep up with the train.
-  std::vector<std::string> warn_of_speed() const;
+  /// Speeds near those at which waves in the track or in the ground keep up with the train; an irregularity without the
+  /// short waves that excite up to 80 Hz.
+  std::vector<std::string> warn() const;
 
   bool is_rough;
-  double speed;           ///< [m/s]
-  double rayleigh_speed;  ///< of the upper layer of the ground [m/s]; 0: not known
+  double speed;                  ///< [m/s]
+  double rayleigh_speed;         ///< of the upper layer of the ground [m/s]; 0: not known
+  double shortest_wave = 0;      ///< of the irregularity [m]; 0: none
+  bool has_wide_margin = false;  ///< of track before and behind the wheels, as where they lift off
   Course course;
   track::TrackData data;
   std::shared_ptr<const track::Profile> profile;

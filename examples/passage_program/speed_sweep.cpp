@@ -30,7 +30,7 @@ int run_speed_sweep(const PassageProgram& program, const PassageProgramOptions& 
         PassageRun run(program, options, options.speeds[i] * km / h);
         run.compute();
         summaries[i] = run.summarise();
-        warnings[i] = run.warn_of_speed();
+        warnings[i] = run.warn();
         for (const std::string& warning : run.passage.warnings) warnings[i].push_back(warning);
       } catch (const std::exception& e) {
         failures[i] = e.what();

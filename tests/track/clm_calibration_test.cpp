@@ -131,14 +131,21 @@ TEST(ClmCalibration, HasNoBetterPassiveNeighbour) {
 }
 
 TEST(ClmCalibration, StaysPassiveWhereTheGroundWouldNotHaveIt) {
-  // A ground whose phase at high frequencies asks for a negative mass: H_00 falls ever more slowly.
-  GroundCompliance ground = ground_of({0.0, 5.2e7, 4.3e5, 2.4e7, -1.07e5});
-  for (Index i = 0; i < ground.frequency.size(); ++i)
-    ground.H.row(i) *= 1 / (1 + 1e-5 * ground.frequency[i] * ground.frequency[i]);
+  // A chain of negative mass follows this ground exactly, a passive one cannot: the best lies on that bound.
+  const Clm impossible{-300.0, 5.2e7, 4.3e5, 2.4e7, -9e4};
+  const GroundCompliance ground = ground_of(impossible);
   const ClmFit fit = calibrate_clm(ground, {.lowest = 2, .highest = 98});
-  EXPECT_GE(fit.clm.m_f, 0);
-  EXPECT_GE(fit.clm.d_f + 4 * fit.clm.d_c, 0);
-  EXPECT_NO_THROW(validate(Foundation(fit.clm), "fit"));
+  EXPECT_THAT(fit.bounds, ElementsAre("m_f = 0"));
+  EXPECT_EQ(fit.clm.m_f, 0);
+  const double least = cost(ground, fit.clm);
+  EXPECT_LT(cost(ground, impossible), 1e-6 * least);
+  for (const double factor : {0.99, 1.01}) {
+    EXPECT_GT(cost(ground, {0.0, factor * fit.clm.k_f, fit.clm.d_f, fit.clm.k_c, fit.clm.d_c}), least);
+    EXPECT_GT(cost(ground, {0.0, fit.clm.k_f, factor * fit.clm.d_f, fit.clm.k_c, fit.clm.d_c}), least);
+    EXPECT_GT(cost(ground, {0.0, fit.clm.k_f, fit.clm.d_f, factor * fit.clm.k_c, fit.clm.d_c}), least);
+    EXPECT_GT(cost(ground, {0.0, fit.clm.k_f, fit.clm.d_f, fit.clm.k_c, factor * fit.clm.d_c}), least);
+  }
+  EXPECT_GT(cost(ground, {20.0, fit.clm.k_f, fit.clm.d_f, fit.clm.k_c, fit.clm.d_c}), least);
   EXPECT_THAT(std::string(fit.clm.k_f.source), HasSubstr("infinite chain, 2-98 Hz, rms error"));
 }
 
