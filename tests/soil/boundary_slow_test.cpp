@@ -14,6 +14,9 @@ namespace easydyn::soil {
 namespace {
 
 constexpr std::array<double, 5> frequencies{3, 5, 8, 10, 20};
+// Held with a crossover of 10 Hz on both soils at all receivers; the goal at 3 Hz was -20 dB. Measured at the worst
+// receiver: -33, -47, -34, -32, -37 dB.
+constexpr std::array<double, 5> stated{-30, -40, -30, -30, -35};
 
 Layer layer(double thickness, double cs) {
   Layer result;
@@ -75,12 +78,18 @@ TEST_P(Boundary, SendsBackLessThanStated) {
       GetParam() == 0 ? std::vector<Layer>{layer(0, 150)} : std::vector<Layer>{layer(5, 150), layer(0, 300)};
   std::printf("%s\n", GetParam() == 0 ? "cs 150 m/s" : "5 m of cs 150 m/s on 300 m/s");
   const GroundMotion reference = compute_motion(layers, 28, 10);
-  for (const double crossover : {0.0, 8.0, 10.0, 12.0, 14.0}) {
+  for (const double crossover : {0.0, 10.0}) {
     const GroundMotion motion = compute_motion(layers, 3, crossover);
     ASSERT_EQ(motion.time.size(), reference.time.size());
     for (Eigen::Index r = 0; r < 3; ++r) {
       std::printf("  receiver %d:", static_cast<int>(r));
-      for (const double f : frequencies) std::printf(" %6.1f", level(motion, reference, r, f));
+      for (std::size_t f = 0; f < frequencies.size(); ++f) {
+        const double back = level(motion, reference, r, frequencies[f]);
+        std::printf(" %6.1f", back);
+        if (crossover > 0) {
+          EXPECT_LT(back, stated[f]) << frequencies[f] << " Hz, receiver " << r;
+        }
+      }
       std::printf(" dB\n");
     }
   }
