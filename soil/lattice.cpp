@@ -85,6 +85,7 @@ int count_elements(double length, double size) {
 }
 
 constexpr double smallest_distance = 1e-9;  // [m] of planes that are not the same
+constexpr double far_growth = 1.5;  // of elements away from the loads, see LatticeOptions::far_frequency
 
 /// Ascending planes without repetition.
 std::vector<double> sort_planes(std::vector<double> planes) {
@@ -199,9 +200,13 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
           fmt::format("lattice: sponge_elements = {}, must be in 0..100", options.sponge_elements));
   require(options.sponge_growth >= 1 && options.sponge_growth <= 1.5,
           fmt::format("lattice: sponge_growth = {}, must be in 1..1.5", options.sponge_growth));
+  require(options.far_frequency >= 0 && options.far_frequency <= site.highest_frequency,
+          fmt::format("lattice: far_frequency = {} Hz, must be in 0..{} Hz, the highest_frequency",
+                      options.far_frequency, site.highest_frequency));
   require(options.lanes >= 1 && options.lanes <= 64,
           fmt::format("lattice: lanes = {}, must be in 1..64", options.lanes));
   require(!footprints.empty() || !site.receivers.empty(), "lattice: neither footprints nor receivers");
+  require(!footprints.empty() || !(options.far_frequency > 0), "lattice: far_frequency needs footprints");
 
   const bool half = options.half_model || options.quarter_model;
 
@@ -231,6 +236,7 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     include(foot.x - foot.length / 2, foot.x + foot.length / 2, foot.y - foot.width / 2,
             foot.y + foot.width / 2);
   }
+  const std::array<double, 2> feet_x{low_x, high_x}, feet_y{low_y, high_y};
   for (const Receiver& receiver : site.receivers) {
     const auto [x, y, z] = receiver.position;
     require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && z <= 0,
@@ -264,6 +270,9 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
   const auto size_for = [&](double cs) {
     return options.degree * cs / (site.highest_frequency * site.points_per_wavelength);
   };
+  const auto size_far = [&](double cs) {
+    return size_for(cs) * (options.far_frequency > 0 ? site.highest_frequency / options.far_frequency : 1.0);
+  };
   const double h = size_for(slowest);
   require(
       (high_x - low_x) / h < 1e5 && (high_y - low_y) / h < 1e5,
@@ -290,9 +299,32 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     lines.insert(lines.end(), above.begin(), above.end());
   };
 
-  planes_x.insert(planes_x.end(), {low_x, high_x});
-  planes_y.insert(planes_y.end(), {low_y, high_y});
-  lattice.x = divide(sort_planes(planes_x), h);
+  // Lines between `low` and `high`, at least; `fine` holds footprints and faces of blocks.
+  const auto make_lines = [&](std::vector<double> planes, std::array<double, 2> fine, double low, double high,
+                              bool ends_at_plane) {
+    if (!(options.far_frequency > 0)) {
+      planes.insert(planes.end(), {low, high});
+      return divide(sort_planes(planes), h);
+    }
+    for (const double plane : planes) {
+      fine[0] = std::min(fine[0], plane);
+      fine[1] = std::max(fine[1], plane);
+    }
+    planes.insert(planes.end(), {ends_at_plane ? low : fine[0] - h, fine[1] + h});
+    std::vector<double> lines = divide(sort_planes(planes), h);
+    const double coarse = h * site.highest_frequency / options.far_frequency;
+    double step = lines.back() - lines[lines.size() - 2];
+    while (lines.back() < high || step < 0.999 * coarse)
+      lines.push_back(lines.back() + (step = std::min(far_growth * step, coarse)));
+    if (ends_at_plane) return lines;
+    std::reverse(lines.begin(), lines.end());
+    step = lines[lines.size() - 2] - lines.back();
+    while (lines.back() > low || step < 0.999 * coarse)
+      lines.push_back(lines.back() - (step = std::min(far_growth * step, coarse)));
+    std::reverse(lines.begin(), lines.end());
+    return lines;
+  };
+  lattice.x = make_lines(planes_x, feet_x, low_x, high_x, options.quarter_model);
   const int sides = options.quarter_model ? 1 : 2;
   const int plain_x = lattice.nx() + sides * options.sponge_elements;
   const int extra =
@@ -304,7 +336,7 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
   add_sponge(lattice.x, lattice.sponge_x[0], lattice.sponge_x[1]);
 
   lattice.sponge_y = {half ? 0 : options.sponge_elements, options.sponge_elements};
-  lattice.y = divide(sort_planes(planes_y), h);
+  lattice.y = make_lines(planes_y, feet_y, low_y, high_y, half);
   add_sponge(lattice.y, lattice.sponge_y[0], lattice.sponge_y[1]);
 
   // In depth: the layers, then the half-space to the margin below layers and receivers, then the sponge.
@@ -318,7 +350,8 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     for (const PlacedBlock& block : blocks)
       if (-block.z[0] > top + smallest_distance && -block.z[1] < plane - smallest_distance)
         cs = std::min(cs, block.cs);
-    const int count = count_elements(thickness, size_for(cs));
+    const double allowed = std::min(size_far(cs), std::max(size_for(cs), (far_growth - 1) * top));
+    const int count = count_elements(thickness, allowed);
     for (int i = 1; i <= count; ++i) depth.push_back(top + thickness * i / count);
     layer_down.insert(layer_down.end(), count, l);
   };
@@ -332,15 +365,17 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
     if (l < last) divide_down(l, interface);
   }
   const double bottom = std::max(depth.back(), deepest) + std::max(site.margin, 0.5 * h);
-  const double full = size_for(site.layers[last].cs);
+  const double full = size_far(site.layers[last].cs);
   double size = depth.size() > 1 ? depth.back() - depth[depth.size() - 2] : h;
   // Coarsen at twice the pace of the sponge from the last layer's size to what the half-space allows.
-  const double pace = std::max(1.3, options.sponge_growth * options.sponge_growth);
+  const double pace =
+      std::max(options.far_frequency > 0 ? far_growth : 1.3, options.sponge_growth * options.sponge_growth);
+  if (options.far_frequency > 0 && depth.size() == 1) size /= pace;
   do {
     size = std::min(full, std::max(size * pace, h));
     depth.push_back(depth.back() + size);
     layer_down.push_back(last);
-  } while (depth.back() < bottom);
+  } while (depth.back() < bottom || (options.far_frequency > 0 && size < 0.999 * full));
   // Elements of the half-space are larger than those along the surface: three quarters of them reach as far.
   const int sponge_z = (3 * options.sponge_elements + 3) / 4;
   for (int i = 0; i < sponge_z; ++i) {

@@ -16,7 +16,10 @@ struct LatticeOptions {
   bool quarter_model = false;  ///< only x >= 0 and y >= 0: one footprint at the origin
   int sponge_elements = 8;     ///< damped elements on each outer side (three quarters of it below), >= 0
   double sponge_growth = 1.1;  ///< size ratio of neighbouring elements in the sponge and in depth, 1..1.5
-  int lanes = 16;              ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
+  /// > 0: elements grow by half away from footprints and blocks, and downward, to what this frequency [Hz] asks
+  /// for, and so the sponge is longer: for loads without anything above it. 0: Site::highest_frequency everywhere.
+  double far_frequency = 0;
+  int lanes = 16;  ///< elements along x + 1 is made a multiple of this with more sponge, >= 1
 };
 
 /// The elements lo <= e < hi of each axis that are not of their layer's material.

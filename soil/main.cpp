@@ -88,6 +88,12 @@ void add_run_command(CLI::App& app, RunArguments& run) {
                    "Fields in double precision (slower, for checks)");
   command.add_flag("--quarter-model", run.options.quarter_model,
                    "Only x >= 0 and y >= 0 (one load, at the origin)");
+  command
+      .add_option("--crossover", run.options.crossover_frequency,
+                  "Frequency [Hz] below which the motion is computed on a larger, coarser lattice, for less "
+                  "reflection from the edge of the model; 0: none")
+      ->check(CLI::Range(0.0, 1e3).description(""))
+      ->capture_default_str();
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
   command.add_flag("--verify", run.verify,

@@ -77,6 +77,8 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
   add("solver", "degree of the elements", "1", options.degree, standard.degree);
   add("solver", "precision of the fields", "bit", options.double_precision ? 64 : 32,
       standard.double_precision ? 64 : 32);
+  add("solver", "crossover to the lattice of low frequencies (0: none)", "Hz", options.crossover_frequency,
+      standard.crossover_frequency);
   add("solver", "half model, y >= 0 (0 no, 1 yes)", "1", options.half_model, standard.half_model);
   add("solver", "quarter model, x >= 0 and y >= 0 (0 no, 1 yes)", "1", options.quarter_model,
       standard.quarter_model);
@@ -217,6 +219,14 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
              "          {:.1f} m x {:.1f} m x {:.1f} m, of which {:.1f} m x {:.1f} m x {:.1f} m undamped\n",
              size(lattice.x), size(lattice.y), size(lattice.z), inside(lattice.interior_x()),
              inside(lattice.interior_y()), inside(lattice.interior_z()));
+  if (const Lattice* low = solver.low_lattice()) {
+    fmt::print(
+        out,
+        "          below {} Hz: {} x {} x {} elements, {:.2f} million degrees of freedom, {:.1f} m x {:.1f} "
+        "m x {:.1f} m\n",
+        solver.options().crossover_frequency, low->nx(), low->ny(), low->nz(),
+        static_cast<double>(low->dofs()) / 1e6, size(low->x), size(low->y), size(low->z));
+  }
   fmt::print(out, "memory    {}\n", format_memory(summary.memory));
   fmt::print(out, "steps     {} of {:.4g} ms\n", summary.steps, 1e3 * summary.time_step);
   if (const int layer = find_dictating_layer(site, lattice); layer >= 0) {

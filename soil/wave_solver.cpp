@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
-#include <variant>
+#include <tuple>
+#include <utility>
 
 #include "easydyn/error.hpp"
+#include "soil/frequency_filter.hpp"
 #include "soil/load_history.hpp"
 #include "soil/relaxation.hpp"
 #include "soil/surface_interpolation.hpp"
@@ -38,6 +41,8 @@ void check_options(const SolverOptions& options) {
           fmt::format("sponge_elements = {}, must be >= 0, or -1 (chosen)", options.sponge_elements));
   require(options.sponge_strength >= 0 && std::isfinite(options.sponge_strength),
           fmt::format("sponge_strength = {}, must be >= 0", options.sponge_strength));
+  require(options.crossover_frequency >= 0 && std::isfinite(options.crossover_frequency),
+          fmt::format("crossover_frequency = {} Hz, must be >= 0 (0: none)", options.crossover_frequency));
   require(options.memory_limit >= 0,
           fmt::format("memory_limit = {} byte, must be >= 0", options.memory_limit));
 }
@@ -113,6 +118,33 @@ int component_of(LoadDirection direction) {
   return direction == LoadDirection::x ? 0 : direction == LoadDirection::y ? 1 : 2;
 }
 
+constexpr double crossover_width = 1.4142;  // both parts hold something between crossover / width and x width
+
+/// Loads that add up to the given ones: what lies below the crossover, and what lies above it. Both begin earlier,
+/// because a part of a band begins before the whole does.
+std::pair<SurfaceLoads, SurfaceLoads> split_band(const SurfaceLoads& loads, double crossover) {
+  const Eigen::Index nt = loads.time.size();
+  const double step = (loads.time(nt - 1) - loads.time(0)) / static_cast<double>(nt - 1);
+  const auto lead = static_cast<Eigen::Index>(std::ceil(3 / crossover / step));
+  SurfaceLoads low = loads;
+  low.time = loads.time(0) + step * Eigen::VectorXd::LinSpaced(nt + lead, -static_cast<double>(lead),
+                                                               static_cast<double>(nt - 1))
+                                        .array();
+  low.force.resize(nt + lead, loads.force.cols());
+  low.force.topRows(lead).rowwise() = loads.force.row(0);
+  low.force.bottomRows(nt) = loads.force;
+  SurfaceLoads high = low;
+  // Half a cosine over the logarithm of the frequency.
+  const auto response = [&](double f) -> std::complex<double> {
+    const double place = f > 0 ? std::log(f / crossover) / std::log(crossover_width) : -1;
+    return place <= -1 ? 1.0 : place >= 1 ? 0.0 : 0.5 * (1 - std::sin(M_PI / 2 * place));
+  };
+  for (Eigen::Index j = 0; j < low.force.cols(); ++j)
+    low.force.col(j) = apply_filter(high.force.col(j), step, response, RecordEnds::mirrored);
+  high.force -= low.force;
+  return {low, high};
+}
+
 double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
@@ -137,7 +169,10 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }  // namespace
 
 struct WaveSolver::Impl {
-  Impl(const Site& site_, const SurfaceLoads& loads, const SolverOptions& options_);
+  /// @param far_frequency  see LatticeOptions
+  /// @param start_         time of the first output [s]; NaN: that of the first load
+  Impl(const Site& site_, const SurfaceLoads& given, const SolverOptions& options_, double far_frequency = 0,
+       double start_ = std::numeric_limits<double>::quiet_NaN());
 
   void update_surface_forces(double t);
   void check_nodes_are_in_the_ground();
@@ -153,6 +188,8 @@ struct WaveSolver::Impl {
   }
   template <class T>
   GroundMotion run(WaveEngine<T>& engine, const std::function<void(double)>& progress);
+  GroundMotion run(const std::function<void(double)>& progress);
+  double measure_step();  // [s] of wall clock
 
   Site site;
   SolverOptions options;
@@ -167,15 +204,31 @@ struct WaveSolver::Impl {
   std::unique_ptr<WaveEngine<float>> float_engine;
   std::unique_ptr<WaveEngine<double>> double_engine;
   double dt = 0, output_step = 0, memory = 0;
+  double start = 0;  // time of the first output
   long steps_per_output = 1, outputs = 0, preload_outputs = 0;
+  std::unique_ptr<Impl> low;  // what is below the crossover, if there is one
   double seconds_per_step = 0;
 
   long steps() const { return (preload_outputs + outputs - 1) * steps_per_output + 1; }
 };
 
-WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const SolverOptions& options_)
-    : site(site_), options(options_), history(loads, options_.preload_time) {
+WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const SolverOptions& options_,
+                       double far_frequency, double start_)
+    : site(site_),
+      options(options_),
+      history(given, options_.preload_time),
+      start(std::isnan(start_) ? history.first_time() : start_) {
   check_options(options);
+  SurfaceLoads loads = given, low_loads;
+  if (options.crossover_frequency > 0) {
+    if (!(crossover_width * options.crossover_frequency <= site.highest_frequency))
+      throw ModelError(fmt::format(
+          "solver: crossover_frequency = {} Hz, must be at most {:.4g} Hz, {:.2g} of the "
+          "highest_frequency",
+          options.crossover_frequency, site.highest_frequency / crossover_width, 1 / crossover_width));
+    std::tie(low_loads, loads) = split_band(given, options.crossover_frequency);
+    history = LoadHistory(loads, options.preload_time);
+  }
   LatticeOptions lattice_options;
   lattice_options.degree = options.degree;
   if (options.quarter_model) options.half_model = true;
@@ -186,6 +239,7 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
       options.sponge_elements >= 0
           ? options.sponge_elements
           : static_cast<int>(std::lround(8 * site.points_per_wavelength / 5.5 * 4 / options.degree));
+  lattice_options.far_frequency = far_frequency;
   lattice_options.sponge_growth = options.sponge_growth;
   lattice = make_lattice(site, loads.footprints, lattice_options);
   for (std::size_t f = 0; f < loads.footprints.size(); ++f) {
@@ -255,8 +309,7 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   }
   with_engine([&](auto& engine) { engine.set_time_step(dt); });
 
-  const double duration =
-      site.duration > 0 ? site.duration : history.last_time() - history.first_time() + site.decay_time;
+  const double duration = site.duration > 0 ? site.duration : history.last_time() - start + site.decay_time;
   if (!(duration > 0) || !std::isfinite(duration))
     throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration));
   if (!(duration >= 10 * output_step))
@@ -271,12 +324,22 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
                     "most {:.3g} GB",
                     duration, histories * 1e-9, limit * 1e-9));
   outputs = static_cast<long>(std::floor(duration / output_step + 1e-9)) + 1;
-  Eigen::VectorXd start;
-  history.update_forces(history.first_time() + 1e-12 * output_step, start);
+  Eigen::VectorXd first;
+  history.update_forces(history.first_time() + 1e-12 * output_step, first);
   // A start below 1/1000 of the largest force does no harm as it is.
   const bool preloaded =
-      start.cwiseProduct(taper).cwiseAbs().maxCoeff() > 1e-3 * loads.force.cwiseAbs().maxCoeff();
-  preload_outputs = preloaded ? static_cast<long>(std::ceil(options.preload_time / output_step)) : 0;
+      first.cwiseProduct(taper).cwiseAbs().maxCoeff() > 1e-3 * loads.force.cwiseAbs().maxCoeff();
+  const double before = start - history.first_time() + (preloaded ? options.preload_time : 0.0);
+  preload_outputs = static_cast<long>(std::ceil(before / output_step - 1e-9));
+
+  if (options.crossover_frequency > 0) {
+    SolverOptions low_options = options;
+    low_options.crossover_frequency = 0;
+    low_options.output_step = output_step;
+    low_options.memory_limit = limit - memory;
+    low = std::make_unique<Impl>(site, low_loads, low_options, crossover_width * options.crossover_frequency,
+                                 start);
+  }
 }
 
 void WaveSolver::Impl::check_nodes_are_in_the_ground() {
@@ -317,7 +380,7 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const std::function<vo
   for (Eigen::MatrixXd* v : velocity) *v = Eigen::MatrixXd::Zero(nt, nr);
   motion.footprint_displacement.resize(nt, nl);
 
-  const double t0 = history.first_time() - static_cast<double>(preload_outputs) * output_step;
+  const double t0 = start - static_cast<double>(preload_outputs) * output_step;
   const long total = steps();
   auto told = std::chrono::steady_clock::now();
   // Velocity at an output time: mean of the half steps before and after it.
@@ -386,20 +449,46 @@ long WaveSolver::steps() const {
   return impl_->steps();
 }
 
-RunSummary WaveSolver::compute_summary() {
-  Impl& impl = *impl_;
-  if (impl.seconds_per_step == 0)
-    impl.with_engine([&](auto& engine) {
-      impl.update_surface_forces(impl.history.first_time());
+double WaveSolver::Impl::measure_step() {
+  if (seconds_per_step == 0)
+    with_engine([&](auto& engine) {
+      update_surface_forces(history.first_time());
       engine.set_to_rest();
-      engine.advance(impl.node_forces, false);
-      const auto start = std::chrono::steady_clock::now();
+      engine.advance(node_forces, false);
+      const auto begin = std::chrono::steady_clock::now();
       int count = 0;
-      for (; count < 5 || (seconds_since(start) < 0.3 && count < 1000); ++count)
-        engine.advance(impl.node_forces, false);
-      impl.seconds_per_step = seconds_since(start) / count;
+      for (; count < 5 || (seconds_since(begin) < 0.3 && count < 1000); ++count)
+        engine.advance(node_forces, false);
+      seconds_per_step = seconds_since(begin) / count;
       engine.set_to_rest();
     });
+  return seconds_per_step;
+}
+
+GroundMotion WaveSolver::Impl::run(const std::function<void(double)>& progress) {
+  const auto run_one = [](Impl& impl, const std::function<void(double)>& tell) {
+    return impl.with_engine([&](auto& engine) { return impl.run(engine, tell); });
+  };
+  if (!low) return run_one(*this, progress);
+  const double work = static_cast<double>(lattice.dofs()) * static_cast<double>(steps());
+  const double low_work = static_cast<double>(low->lattice.dofs()) * static_cast<double>(low->steps());
+  const auto tell = [&](double from, double share) -> std::function<void(double)> {
+    if (!progress) return {};
+    return [&progress, from, share](double fraction) { progress(from + share * fraction); };
+  };
+  const double low_share = low_work / (work + low_work);
+  const GroundMotion below = run_one(*low, tell(0, low_share));
+  GroundMotion motion = run_one(*this, tell(low_share, 1 - low_share));
+  motion.vx += below.vx;
+  motion.vy += below.vy;
+  motion.vz += below.vz;
+  motion.footprint_displacement += below.footprint_displacement;
+  motion.energy.resize(0);  // not the sum of the parts'
+  return motion;
+}
+
+RunSummary WaveSolver::compute_summary() {
+  Impl& impl = *impl_;
   RunSummary summary;
   summary.elements = impl.lattice.elements();
   summary.nodes = impl.lattice.nodes();
@@ -407,12 +496,20 @@ RunSummary WaveSolver::compute_summary() {
   summary.memory = impl.memory;
   summary.time_step = impl.dt;
   summary.steps = impl.steps();
-  summary.expected_time = impl.seconds_per_step * static_cast<double>(summary.steps);
+  summary.expected_time = impl.measure_step() * static_cast<double>(summary.steps);
+  if (impl.low) {
+    summary.memory += impl.low->memory;
+    summary.expected_time += impl.low->measure_step() * static_cast<double>(impl.low->steps());
+  }
   return summary;
 }
 
+const Lattice* WaveSolver::low_lattice() const {
+  return impl_->low ? &impl_->low->lattice : nullptr;
+}
+
 GroundMotion WaveSolver::run(const std::function<void(double)>& progress) {
-  return impl_->with_engine([&](auto& engine) { return impl_->run(engine, progress); });
+  return impl_->run(progress);
 }
 
 }  // namespace easydyn::soil

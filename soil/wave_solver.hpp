@@ -36,7 +36,10 @@ struct SolverOptions {
   double sponge_growth =
       1.1;  ///< 1.15 sends three times as much back: waves meet elements too coarse for them
   double sponge_strength =
-      12;                   ///< damping at the outer edge of the sponge x its length / cs of the half-space
+      12;  ///< damping at the outer edge of the sponge x its length / cs of the half-space
+  /// > 0: what the loads hold below about this frequency [Hz] runs on a lattice of its own, coarse away from the
+  /// loads, whose sponge is longer in the same proportion; both motions are added. See docs/soil_boundary.md.
+  double crossover_frequency = 0;
   bool dashpots = true;     ///< viscous dashpots (Stacey) and far-field springs on the outer faces
   double memory_limit = 0;  ///< [byte]; 0: 0.8 of the memory of the machine
 };
@@ -44,10 +47,10 @@ struct SolverOptions {
 /// What a run will cost, known before it starts.
 struct RunSummary {
   long elements = 0, nodes = 0, dofs = 0;
-  double memory = 0;     ///< [byte] of the fields
+  double memory = 0;     ///< [byte] of the fields, those below a crossover included
   double time_step = 0;  ///< [s]
   long steps = 0;
-  double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel
+  double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel, all lattices
 };
 
 /// Result of a run: nt output times, nr receivers, nl footprints.
@@ -57,7 +60,8 @@ struct GroundMotion {
   Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, along its load
   Eigen::VectorXd taper;                   ///< nl: factor on each load
   Eigen::VectorXd energy;                  ///< nt [J] kinetic + u . K w / 2 (w below; strain energy where
-                                           ///< undamped), of the half or the quarter model if one
+                                           ///< undamped), of the half or the quarter model if one; empty
+                                           ///< with a crossover
 };
 
 /// Waves in a layered half-space with blocks under surface loads: 3D spectral elements, explicit leapfrog.
@@ -80,6 +84,7 @@ class WaveSolver {
   WaveSolver& operator=(WaveSolver&&) noexcept;
 
   const Lattice& lattice() const;
+  const Lattice* low_lattice() const;  ///< that of the motion below the crossover; none: nullptr
   const SolverOptions& options() const;
   double time_step() const;  ///< [s]
   long steps() const;

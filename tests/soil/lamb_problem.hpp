@@ -14,7 +14,8 @@ struct Errors {
 
 /// Ricker force on a small footprint of a homogeneous half-space; relative L2 error of the velocity over the
 /// whole record at 5, 10 and 20 m.
-inline Errors compare_with_lamb(double nu, double f0, double points, double safety, int degree = 4) {
+inline Errors compare_with_lamb(double nu, double f0, double points, double safety, int degree = 4,
+                                double crossover = 0) {
   Site site;
   Layer ground;
   ground.density = 1800;
@@ -33,7 +34,7 @@ inline Errors compare_with_lamb(double nu, double f0, double points, double safe
     return (1 - 2 * a) * std::exp(-a);
   };
   SurfaceLoads loads;
-  loads.footprints = {{0, 0, 0.2, 0.2}};
+  loads.footprints = {{0, 0, 0.02, 0.02}};
   const int nt = 301;
   loads.time = Eigen::VectorXd::LinSpaced(nt, 0, 0.3);
   loads.force.resize(nt, 1);
@@ -42,6 +43,7 @@ inline Errors compare_with_lamb(double nu, double f0, double points, double safe
   options.output_step = 1e-3;
   options.step_safety = safety;
   options.degree = degree;
+  options.crossover_frequency = crossover;
   WaveSolver solver(site, loads, options);
   const GroundMotion motion = solver.run();
 
@@ -65,8 +67,9 @@ inline Errors compare_with_lamb(double nu, double f0, double points, double safe
     errors.radial[k] = std::sqrt(difference[1] / norm[1]);
   }
   std::printf(
-      "nu %.2f, degree %d: dt %.3g s, %ld dof, %ld steps: vertical %.4f %.4f %.4f radial %.4f %.4f %.4f\n",
-      nu, degree, solver.time_step(), solver.lattice().dofs(), solver.steps(), errors.vertical[0],
+      "nu %.2f, degree %d, crossover %.0f Hz: dt %.3g s, %ld dof, %ld steps: vertical %.4f %.4f %.4f radial "
+      "%.4f %.4f %.4f\n",
+      nu, degree, crossover, solver.time_step(), solver.lattice().dofs(), solver.steps(), errors.vertical[0],
       errors.vertical[1], errors.vertical[2], errors.radial[0], errors.radial[1], errors.radial[2]);
   return errors;
 }

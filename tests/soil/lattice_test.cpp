@@ -63,6 +63,41 @@ TEST(Lattice, HoldsLoadsReceiversAndMarginInItsUndampedGround) {
   EXPECT_EQ((lattice.nx() + 2) % 16, 0);
 }
 
+TEST(Lattice, CoarsensAwayFromTheLoadsForAFarFrequency) {
+  const Site site = layered_site();  // slowest 109 m/s
+  LatticeOptions options;
+  options.far_frequency = 12.5;
+  const Lattice lattice = make_lattice(site, {{-3, 0, 0.285, 2.5}, {3, 0, 0.285, 2.5}}, options);
+  const double fine = 4 * 109 / (50 * 5.5), coarse = fine * 50 / 12.5, slack = 1 + 1e-9;
+  for (int e = 0; e < lattice.nx(); ++e) {
+    const double low = lattice.x[e], high = lattice.x[e + 1], size = high - low;
+    if (low < 3.2 && high > -3.2) {
+      EXPECT_LE(size, fine * slack) << "at " << low;
+    }
+    if (e >= lattice.sponge_x[0] && e < lattice.nx() - lattice.sponge_x[1]) {
+      EXPECT_LE(size, coarse * slack) << "at " << low;
+    }
+    if (e > 0) {  // no jump by more than half
+      EXPECT_NEAR(std::log(size / (low - lattice.x[e - 1])), 0, std::log(1.5) * slack) << "at " << low;
+    }
+  }
+  for (int e = 0; e < lattice.ny() - lattice.sponge_y[1]; ++e)
+    EXPECT_LE(lattice.y[e + 1] - lattice.y[e], (e < 1 ? fine : coarse) * slack);
+  // The sponge starts where the elements are as coarse as they may be, so that it is as long as they allow.
+  const int end = lattice.nx() - lattice.sponge_x[1];
+  EXPECT_NEAR(lattice.x[end] - lattice.x[end - 1], coarse, 1e-3 * coarse);
+  EXPECT_LE(lattice.interior_x()[0], -3 - 0.285 / 2 - 3);
+  EXPECT_GE(lattice.interior_y()[1], 19);
+  EXPECT_LE(lattice.z.back() - lattice.z[lattice.nz() - 1], fine * slack);
+  for (const double interface : {-1.2, -3.0, -4.0}) {
+    const auto near = [&](double z) { return std::abs(z - interface) < 1e-12; };
+    EXPECT_TRUE(std::any_of(lattice.z.begin(), lattice.z.end(), near)) << interface;
+  }
+  EXPECT_GT(lattice.x.back() - lattice.interior_x()[1], 3 * 8 * fine);  // a sponge four times as long
+  options.far_frequency = 60;
+  EXPECT_THROW(make_lattice(site, {{0, 0, 0.285, 2.5}}, options), ModelError);
+}
+
 TEST(Lattice, RefusesFootprintsOffTheSymmetryPlaneInTheHalfModel) {
   EXPECT_THROW(make_lattice(layered_site(), {{0, 1, 1, 1}}), ModelError);
 }

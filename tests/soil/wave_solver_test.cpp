@@ -106,6 +106,46 @@ TEST(WaveSolver, IsReciprocal) {
   }
 }
 
+TEST(WaveSolverWithCrossover, IsReciprocalAndKeepsTheTimesOfTheOutput) {
+  Site site = small_site();
+  SolverOptions options = small_options();
+  options.half_model = false;
+  options.crossover_frequency = 10;
+  options.preload_time = 0.05;
+  options.sponge_elements = 1;
+  SurfaceLoads loads = pulse({{-1.1, 0.4, 0.6, 0.8}, {1.4, -0.9, 0.5, 0.7, LoadDirection::x}});
+  loads.time.array() += 0.7;
+  const Eigen::MatrixXd force = loads.force;
+  loads.force.col(1).setZero();
+  WaveSolver solver(site, loads, options);
+  ASSERT_NE(solver.low_lattice(), nullptr);
+  const GroundMotion first = solver.run();
+  const Eigen::VectorXd there = first.footprint_displacement.col(1);
+  EXPECT_NEAR(first.time(0), 0.7, 1e-12);
+  EXPECT_NEAR(first.time(first.time.size() - 1), 0.85, 1e-9);
+  EXPECT_EQ(first.energy.size(), 0);
+  loads.force = force;
+  loads.force.col(0).setZero();
+  const Eigen::VectorXd back = WaveSolver(site, loads, options).run().footprint_displacement.col(0);
+  EXPECT_LT(relative_difference(there, back), 1e-10);
+}
+
+TEST(WaveSolverWithCrossover, RefusesOneTooNearToTheHighestFrequency) {
+  SolverOptions options = small_options();
+  options.crossover_frequency = 15;
+  EXPECT_THAT(
+      [&] {
+        WaveSolver(small_site(), pulse({{0, 0, 0.6, 2.4}}), options);
+      },
+      ThrowsMessage<ModelError>(AllOf(HasSubstr("crossover_frequency = 15 Hz"), HasSubstr("14.14 Hz"))));
+  options.crossover_frequency = -1;
+  EXPECT_THAT(
+      [&] {
+        WaveSolver(small_site(), pulse({{0, 0, 0.6, 2.4}}), options);
+      },
+      ThrowsMessage<ModelError>(HasSubstr("crossover_frequency = -1 Hz")));
+}
+
 TEST(WaveSolver, NeedsNoDoublePrecisionForTheField) {
   const Site site = small_site();
   const SurfaceLoads loads = pulse({{0.2, 0, 0.6, 2.4}});
