@@ -208,7 +208,7 @@ class Synthesis {
     }
     for_each_parallel(last - first + 1, threads_,
                       [&](Index i) { update_kernels(w_(first + i), nodes, 2 * i, kernels); });
-    constexpr Index rows = 24;
+    constexpr Index rows = 48;
     for_each_parallel((grid_.nodes().size() + rows - 1) / rows, threads_, [&](Index chunk) {
       add_distances(nodes, kernels, rows * chunk, std::min(rows, grid_.nodes().size() - rows * chunk),
                     2 * first, columns);
