@@ -5,7 +5,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <numbers>
 
 #include "easydyn/error.hpp"
 #include "easydyn/require.hpp"
@@ -362,6 +362,20 @@ FootprintResponse compute_footprint_response(const LayeredGround& ground, const 
                                              const Eigen::VectorXcd& w) {
   check_request(request);
   return Response(ground, request, w).compute();
+}
+
+Eigen::MatrixXcd compute_compliances(const LayeredGround& ground, double length, double width, double spacing,
+                                     int count, const Eigen::VectorXd& frequencies, int threads) {
+  require_positive("compliances", "spacing", spacing, "m");
+  require_positive("compliances", "count", count, "");
+  FootprintRequest request;
+  request.length = length;
+  request.width = width;
+  request.threads = threads;
+  for (int n = 0; n < count; ++n) request.means.push_back({spacing * n, 0, length, width});
+  return compute_footprint_response(ground, request,
+                                    (2 * std::numbers::pi * frequencies).cast<std::complex<double>>())
+      .mean;
 }
 
 }  // namespace easydyn::soil

@@ -35,4 +35,11 @@ struct FootprintResponse {
 FootprintResponse compute_footprint_response(const LayeredGround& ground, const FootprintRequest& request,
                                              const Eigen::VectorXcd& w);
 
+/// Compliances H_0n [m/N] of a row of equal footprints along x: mean downward displacement of footprint n per unit force on
+/// footprint 0, n = 0 ... count - 1; the matrix of all of them is H_|i-j|.
+/// @param frequencies  [Hz], ascending, > 0 where a layer is elastic
+/// @returns frequencies x count
+Eigen::MatrixXcd compute_compliances(const LayeredGround& ground, double length, double width, double spacing,
+                                     int count, const Eigen::VectorXd& frequencies, int threads = 0);
+
 }  // namespace easydyn::soil

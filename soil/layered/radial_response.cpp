@@ -28,13 +28,36 @@ constexpr double pi = std::numbers::pi;
 constexpr int points = 16;           // of a panel
 constexpr double panel_phase = 26;   // largest k r over a panel: 16 points integrate exp(i k r) to 1e-8
 constexpr double panel_reach = 3.3;  // largest length of a panel over the distance of the nearest pole: 1e-8
-constexpr double cut_phase = 72;     // k r where the integral begins to end
+constexpr double cut_phase = 72;     // k r over which the integral ends
 
-// Smooth end of the integral: 1 up to k = K, 0 from 2 K.
-double compute_cut(double k_over_K) {
-  if (k_over_K <= 1) return 1;
-  if (k_over_K >= 2) return 0;
-  return 0.5 * std::erfc(4.2 * (2 * k_over_K - 3));
+// Smooth end of the integral: 1 up to K1, 0 from K1 + width.
+double compute_cut(double k, double K1, double width) {
+  const double part = (k - K1) / width;
+  return part <= 0 ? 1 : part >= 1 ? 0 : 0.5 * std::erfc(4.2 * (2 * part - 1));
+}
+
+struct BesselPair {
+  double J0, J1;
+};
+
+// J0 and J1 for x >= 0; far out by Hankel's asymptotic series (Abramowitz and Stegun 9.2.5 to 9.2.10), to 1e-15.
+BesselPair compute_bessel(double x) {
+  if (x < 25) return {::j0(x), ::j1(x)};
+  const auto modulate = [x](double mu) {  // P and Q
+    double P = 0, Q = 0, term = 1;
+    for (int m = 0; m < 16; m += 2) {
+      const double sign = m % 4 == 0 ? 1 : -1;
+      P += sign * term;
+      term *= (mu - (2 * m + 1) * (2 * m + 1)) / ((m + 1) * 8 * x);
+      Q += sign * term;
+      term *= (mu - (2 * m + 3) * (2 * m + 3)) / ((m + 2) * 8 * x);
+    }
+    return std::pair{P, Q};
+  };
+  const auto [P0, Q0] = modulate(0);
+  const auto [P1, Q1] = modulate(4);
+  const double c = std::cos(x), s = std::sin(x), scale = 1 / std::sqrt(pi * x);
+  return {scale * (P0 * (c + s) - Q0 * (s - c)), scale * (P1 * (s - c) + Q1 * (s + c))};
 }
 
 // Where poles and branch points lie: wavenumbers lowest ... highest, off the axis by `slope` times k.
@@ -74,7 +97,7 @@ Singularities find_singularities(const LayeredGround& ground, const Eigen::Vecto
 
 struct Nodes {
   std::vector<double> k, weight;
-  double K1 = 0;  // end of the part where the waves are
+  double K1 = 0;  // beyond the waves: from here the integral ends
 };
 
 // Panels from 0 to where the smallest distance no longer asks for more.
@@ -82,12 +105,13 @@ Nodes make_nodes(const Singularities& s, double largest_distance, double depth, 
   static const GaussRule rule(points);
   Nodes nodes;
   const double reach = largest_distance + 2 * depth;  // waves down to the half-space and back
-  nodes.K1 = std::max(2 * s.highest, cut_phase / largest_distance);
-  const double end = 2 * std::max(nodes.K1, cut_phase / smallest);
+  nodes.K1 = 1.25 * s.highest;
+  const double end = nodes.K1 + cut_phase / smallest;
   double k = 0;
   while (k < end) {
-    const double shortest_phase = k > 2 * nodes.K1 ? std::min(reach, 2 * cut_phase / k) : reach;
-    double width = panel_phase / shortest_phase;
+    // From K1 on only distances below cut_phase / (k - K1) are still at work.
+    const double phase_reach = k > nodes.K1 ? std::min(reach, cut_phase / (k - nodes.K1)) : reach;
+    double width = panel_phase / phase_reach;
     for (int pass = 0; pass < 4; ++pass) {
       width =
           std::min(width, panel_reach * std::min({s.compute_distance(k), s.compute_distance(k + width / 2),
@@ -184,7 +208,7 @@ class Synthesis {
     }
     for_each_parallel(last - first + 1, threads_,
                       [&](Index i) { update_kernels(w_(first + i), nodes, 2 * i, kernels); });
-    constexpr Index rows = 24;
+    constexpr Index rows = 48;
     for_each_parallel((grid_.nodes().size() + rows - 1) / rows, threads_, [&](Index chunk) {
       add_distances(nodes, kernels, rows * chunk, std::min(rows, grid_.nodes().size() - rows * chunk),
                     2 * first, columns);
@@ -228,20 +252,20 @@ class Synthesis {
   void add_distances(const Nodes& nodes, const std::vector<Kernels>& kernels, Index row, Index rows,
                      Index column, Index columns) {
     const double nearest = std::max(grid_.nodes()(row), request_.smallest);
-    const double end = 2 * std::max(nodes.K1, cut_phase / nearest);
+    const double end = nodes.K1 + cut_phase / nearest;
     const Index count = std::lower_bound(nodes.k.begin(), nodes.k.end(), end) - nodes.k.begin();
     Eigen::MatrixXd J0(rows, count), J1(rows, count), J2;
     if (request_.horizontal) J2.resize(rows, count);
     for (Index i = 0; i < rows; ++i) {
       const double r = grid_.nodes()(row + i);
-      const double K = std::max(nodes.K1, cut_phase / std::max(r, request_.smallest));
+      const double width = cut_phase / std::max(r, request_.smallest);
       for (Index n = 0; n < count; ++n) {
-        const double k = nodes.k[static_cast<std::size_t>(n)], x = k * r, cut = compute_cut(k / K);
-        const bool ended = cut == 0;
-        const double first = ended ? 0 : ::j0(x), second = ended ? 0 : ::j1(x);
-        J0(i, n) = cut * first;
-        J1(i, n) = cut * second;
-        if (request_.horizontal) J2(i, n) = cut * (x > 1e-3 ? 2 * second / x - first : x * x / 8);
+        const double k = nodes.k[static_cast<std::size_t>(n)], x = k * r;
+        const double cut = compute_cut(k, nodes.K1, width);
+        const BesselPair J = cut == 0 ? BesselPair{0, 0} : compute_bessel(x);
+        J0(i, n) = cut * J.J0;
+        J1(i, n) = cut * J.J1;
+        if (request_.horizontal) J2(i, n) = cut * (x > 1e-3 ? 2 * J.J1 / x - J.J0 : x * x / 8);
       }
     }
     for (std::size_t d = 0; d < kernels.size(); ++d) {

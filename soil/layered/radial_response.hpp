@@ -63,10 +63,11 @@ struct RadialRequest {
 /// Point-load responses at one depth after the other.
 ///
 /// The integral over the wavenumber is taken on the real axis by Gauss-Legendre panels of 16 points, short
-/// enough for the nearest pole or branch point (waves lie off the axis by their damping or by Im w) and for the Bessel function
-/// at the largest distance; beyond twice the largest wavenumber of the waves it ends smoothly at k r = 72 ... 144,
-/// where the Bessel function has long taken over (error about 1e-8). Frequencies within an octave share their panels.
-/// Cost: about 1 us per wavenumber, frequency and layer, some hundreds to thousands of wavenumbers.
+/// enough for the nearest pole or branch point (waves lie off the axis by their damping or by Im w) and for the
+/// Bessel function at the largest distance; from 1.5 times the wavenumber of the slowest waves on it ends smoothly over a
+/// width of 72 / r (error about 1e-8). Frequencies within an octave share their panels.
+/// Cost: about 1 us per wavenumber, frequency and three layers, and a product of matrices (distances x wavenumbers x
+/// frequencies); the numbers of wavenumbers and distances grow with the largest distance over the shortest wavelength.
 /// @param w  circular frequencies [rad/s], ascending in Re w >= 0; Im w <= 0
 /// @throws ModelError if waves are undamped at a frequency: damping ratio 0 in a layer and Im w = 0
 std::vector<RadialResponse> compute_radial_responses(const LayeredGround& ground,

@@ -196,6 +196,7 @@ void add_ground_section(visu::Report& report, const ResultReader& ground) {
   add_spectra(report, ground, receivers);
   add_decay(report, receivers, ppv);
   add_indicators(report, ground, receivers, ppv);
+  add_dispersion(report, ground);
 }
 
 std::vector<visu::KeyFigure> ground_key_figures(const ResultReader& ground) {

@@ -22,6 +22,9 @@ void add_track_section(visu::Report& report, const results::ResultReader& track)
 void add_ground_section(visu::Report& report, const results::ResultReader& ground);
 std::vector<visu::KeyFigure> ground_key_figures(const results::ResultReader& ground);
 
+/// Phase speed of the ground's Rayleigh modes against frequency, as a part of the section on the ground.
+void add_dispersion(visu::Report& report, const results::ResultReader& ground);
+
 /// Step 2 against the semi-analytical motion, if the file holds it (`soil run --verify`).
 void add_verification_section(visu::Report& report, const results::ResultReader& ground);
 
