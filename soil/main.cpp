@@ -17,6 +17,7 @@
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
+#include "soil/stop_signal.hpp"
 #include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
@@ -37,9 +38,13 @@ Files (docs/formats.md describes them):
                     of the footprints. It appears when the run is complete. One from an earlier run is first
                     renamed to vibrations.previous.h5, so that a run that fails leaves none that looks new.
 
+  checkpoint.bin    the state of a run that is not complete. Ctrl-C, SIGTERM and a crash of the machine lose little:
+                    the same command with --restart goes on and gives the same bits. Removed at the end.
+
 Nothing is claimed above the highest frequency of the site file: the loads are passed unchanged up to it and
 fade out to nothing at 1.25 times it, and so does the motion in vibrations.h5.
-Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options.)";
+Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options, 130 or 143 stopped by SIGINT
+(Ctrl-C) or SIGTERM.)";
 
 const char* const report_footer = R"(
 Example:
@@ -53,6 +58,8 @@ struct RunArguments {
   std::string damping = "constant";
   bool dry_run = false;
   bool full_model = false;
+  double checkpoint_every = 10;  // [min]
+  bool restart = false;
   SolverOptions options;
 };
 
@@ -84,20 +91,38 @@ void add_run_command(CLI::App& app, RunArguments& run) {
                    "Fields in double precision (slower, for checks)");
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
+  command
+      .add_option("--checkpoint-every", run.checkpoint_every,
+                  "Minutes between two checkpoints; 0: only when the run is stopped")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->capture_default_str()
+      ->type_name("MINUTES");
+  command.add_flag("--restart", run.restart, "Go on from the checkpoint in the output folder");
 }
 
-// An earlier result must not look like this run's.
-void set_aside(const fs::path& result) {
+// An earlier result must not look like this run's: vibrations.h5 becomes vibrations.previous.h5.
+// Returns whether there was one.
+bool set_aside(const fs::path& result) {
   fs::path previous = result;
-  previous.replace_filename("vibrations.previous.h5");
+  previous.replace_filename(result.stem().string() + ".previous" + result.extension().string());
   std::error_code error;
-  if (fs::exists(result, error)) {
-    fs::rename(result, previous, error);
-    if (error) {
-      throw InputError(fmt::format("{}: cannot be renamed to {}, {}", result.string(), previous.string(),
-                                   error.message()));
-    }
+  if (!fs::exists(result, error)) return false;
+  fs::rename(result, previous, error);
+  if (error) {
+    throw InputError(
+        fmt::format("{}: cannot be renamed to {}, {}", result.string(), previous.string(), error.message()));
   }
+  return true;
+}
+
+RunControl make_control(const RunArguments& arguments) {
+  RunControl control;
+  control.checkpoint = arguments.output / "checkpoint.bin";
+  control.checkpoint_interval = 60 * arguments.checkpoint_every;
+  control.restart = arguments.restart;
+  control.is_stop_wanted = [] { return StopSignal::number() != 0; };
+  control.warn = [](const std::string& sentence) { fmt::print(stderr, "soil: warning: {}\n", sentence); };
+  return control;
 }
 
 void run(RunArguments& arguments, const std::string& command_line) {
@@ -110,6 +135,13 @@ void run(RunArguments& arguments, const std::string& command_line) {
           fmt::format("{}: cannot be made a folder, {}", arguments.output.string(), error.message()));
     }
     set_aside(result);
+    if (!arguments.restart && set_aside(arguments.output / "checkpoint.bin")) {
+      fmt::print(
+          stderr,
+          "soil: warning: {}: this run starts anew, without --restart; the checkpoint of the earlier one "
+          "is now checkpoint.previous.bin\n",
+          (arguments.output / "checkpoint.bin").string());
+    }
   }
   const Site site = read_site(arguments.site);
   for (const std::string& unusual : unusual_values(site)) {
@@ -130,17 +162,34 @@ void run(RunArguments& arguments, const std::string& command_line) {
           fmt::format("{}, {}: {}", arguments.site.string(), arguments.loads.string(), error.what()));
     }
   }();
+  const RunControl control = make_control(arguments);
   print_run_summary(stdout, site, loads, solver);
+  print_file_summary(stdout, solver, control);
   if (arguments.dry_run) {
     return;
   }
-  const Vibrations vibrations = predict_vibrations(site, loads, solver);
+  const Vibrations vibrations = predict_vibrations(site, loads, solver, stdout, control);
   write_vibrations(result, vibrations,
                    {.program = "soil",
                     .command = command_line,
                     .convention = "SI units; x along the track, y to the left, z up; footprints downward"});
+  std::error_code ignored;
+  fs::remove(control.checkpoint, ignored);
   print_indicators(stdout, vibrations);
   fmt::print("\n{}\n", result.string());
+}
+
+// As run(), with an end before the end on SIGINT and SIGTERM. Returns the exit status.
+int run_stoppable(RunArguments& arguments, const std::string& command_line) {
+  const StopSignal signal;
+  try {
+    run(arguments, command_line);
+    return 0;
+  } catch (const RunStopped& stopped) {
+    fmt::print(stderr, "soil: {}: {}\nTo go on: {}{}\n", StopSignal::name(), stopped.what(), command_line,
+               arguments.restart ? "" : " --restart");
+    return 128 + StopSignal::number();  // as a shell says it
+  }
 }
 
 void add_report_command(CLI::App& app, fs::path& folder) {
@@ -192,7 +241,7 @@ int run_program(int argc, char** argv) {
   }
   try {
     if (app.got_subcommand("run")) {
-      run(arguments, results::join_command_line(argc, argv));
+      return run_stoppable(arguments, results::join_command_line(argc, argv));
     } else {
       write_report(report_folder);
     }

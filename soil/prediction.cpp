@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "easydyn/results/progress.hpp"
+#include "soil/disk_space.hpp"
 #include "soil/frequency_filter.hpp"
 
 namespace easydyn::soil {
@@ -113,10 +114,6 @@ int find_dictating_layer(const Site& site, const Lattice& lattice) {
   return crossing(shortest) < 0.5 * others ? lattice.layer[shortest] : -1;
 }
 
-std::string format_memory(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
-
 }  // namespace
 
 WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options) {
@@ -127,8 +124,8 @@ WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const Solver
   return WaveSolver(site, limited, options);
 }
 
-Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
-                              std::FILE* out) {
+Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver, std::FILE* out,
+                              const RunControl& control) {
   Vibrations v;
   add_site(v.parameters, site);
   add_solver(v.parameters, site, solver);
@@ -144,11 +141,14 @@ Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveS
   if (out) {
     progress = std::make_unique<results::Progress>("waves", out);
   }
-  GroundMotion motion = solver.run([&](double fraction) {
+  RunControl with_progress = control;
+  with_progress.progress = [&, first = true](double fraction) mutable {
     if (progress) {
-      progress->update(fraction);
+      first ? progress->start_at(fraction) : progress->update(fraction);
     }
-  });
+    first = false;
+  };
+  GroundMotion motion = solver.run(with_progress);
   if (progress) {
     progress->finish();
   }
@@ -179,7 +179,7 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
              "          {:.1f} m x {:.1f} m x {:.1f} m, of which {:.1f} m x {:.1f} m x {:.1f} m undamped\n",
              size(lattice.x), size(lattice.y), size(lattice.z), inside(lattice.interior_x()),
              inside(lattice.interior_y()), inside(lattice.interior_z()));
-  fmt::print(out, "memory    {}\n", format_memory(summary.memory));
+  fmt::print(out, "memory    {}\n", format_bytes(summary.memory));
   fmt::print(out, "steps     {} of {:.4g} ms\n", summary.steps, 1e3 * summary.time_step);
   if (const int layer = find_dictating_layer(site, lattice); layer >= 0) {
     const Layer& thin = site.layers[static_cast<std::size_t>(layer)];
@@ -188,6 +188,18 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
   }
   fmt::print(out, "expected  {}\n", results::format_duration(summary.expected_time));
   std::fflush(out);
+}
+
+void print_file_summary(std::FILE* out, WaveSolver& solver, const RunControl& control) {
+  if (control.checkpoint.empty()) return;
+  // The new checkpoint is complete before the old one goes.
+  const double checkpoint = solver.compute_summary().checkpoint;
+  fmt::print(out, "checkpoint {} {}\n", format_bytes(checkpoint),
+             control.checkpoint_interval > 0
+                 ? "every " + results::format_duration(control.checkpoint_interval)
+                 : std::string("when stopped"));
+  std::fflush(out);
+  require_disk_space(control.checkpoint.parent_path(), 2 * checkpoint, "checkpoints");
 }
 
 void print_indicators(std::FILE* out, const Vibrations& v) {
