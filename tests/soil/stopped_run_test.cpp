@@ -40,7 +40,7 @@ points_per_wavelength = 4
 margin = 0
 [loads]
 taper_length = 0
-duration = 6
+duration = 3
 )";
 
 class StoppedRun : public ::testing::Test {
