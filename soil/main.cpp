@@ -38,6 +38,7 @@ Files (docs/formats.md describes them):
                     of the footprints. It appears when the run is complete. One from an earlier run is first
                     renamed to vibrations.previous.h5, so that a run that fails leaves none that looks new.
 
+  snapshots/        pictures of planes of the ground, if the site file asks for them: open the .pvd in ParaView
   checkpoint.bin    the state of a run that is not complete. Ctrl-C, SIGTERM and a crash of the machine lose little:
                     the same command with --restart goes on and gives the same bits. Removed at the end.
 
@@ -107,6 +108,7 @@ bool set_aside(const fs::path& result) {
   previous.replace_filename(result.stem().string() + ".previous" + result.extension().string());
   std::error_code error;
   if (!fs::exists(result, error)) return false;
+  if (fs::is_directory(result, error)) fs::remove_all(previous, error);  // only files are replaced
   fs::rename(result, previous, error);
   if (error) {
     throw InputError(
@@ -115,11 +117,20 @@ bool set_aside(const fs::path& result) {
   return true;
 }
 
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (!fs::is_directory(folder)) {
+    throw InputError(fmt::format("{}: cannot be made a folder, {}", folder.string(), error.message()));
+  }
+}
+
 RunControl make_control(const RunArguments& arguments) {
   RunControl control;
   control.checkpoint = arguments.output / "checkpoint.bin";
   control.checkpoint_interval = 60 * arguments.checkpoint_every;
   control.restart = arguments.restart;
+  control.snapshots = arguments.output / "snapshots";
   control.is_stop_wanted = [] { return StopSignal::number() != 0; };
   control.warn = [](const std::string& sentence) { fmt::print(stderr, "soil: warning: {}\n", sentence); };
   return control;
@@ -128,12 +139,7 @@ RunControl make_control(const RunArguments& arguments) {
 void run(RunArguments& arguments, const std::string& command_line) {
   const fs::path result = arguments.output / "vibrations.h5";
   if (!arguments.dry_run) {
-    std::error_code error;
-    fs::create_directories(arguments.output, error);
-    if (!fs::is_directory(arguments.output)) {
-      throw InputError(
-          fmt::format("{}: cannot be made a folder, {}", arguments.output.string(), error.message()));
-    }
+    make_folder(arguments.output);
     set_aside(result);
     if (!arguments.restart && set_aside(arguments.output / "checkpoint.bin")) {
       fmt::print(
@@ -168,6 +174,8 @@ void run(RunArguments& arguments, const std::string& command_line) {
   if (arguments.dry_run) {
     return;
   }
+  if (!arguments.restart) set_aside(control.snapshots);
+  if (!site.snapshots.empty()) make_folder(control.snapshots);
   const Vibrations vibrations = predict_vibrations(site, loads, solver, stdout, control);
   write_vibrations(result, vibrations,
                    {.program = "soil",

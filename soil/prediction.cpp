@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -191,15 +192,26 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
 }
 
 void print_file_summary(std::FILE* out, WaveSolver& solver, const RunControl& control) {
-  if (control.checkpoint.empty()) return;
-  // The new checkpoint is complete before the old one goes.
-  const double checkpoint = solver.compute_summary().checkpoint;
-  fmt::print(out, "checkpoint {} {}\n", format_bytes(checkpoint),
-             control.checkpoint_interval > 0
-                 ? "every " + results::format_duration(control.checkpoint_interval)
-                 : std::string("when stopped"));
+  const RunSummary summary = solver.compute_summary();
+  double total = 0;
+  if (!control.checkpoint.empty()) {
+    fmt::print(out, "checkpoint {} {}\n", format_bytes(summary.checkpoint),
+               control.checkpoint_interval > 0
+                   ? "every " + results::format_duration(control.checkpoint_interval)
+                   : std::string("when stopped"));
+    total += 2 * summary.checkpoint;  // the new one is complete before the old one goes
+  }
+  if (!control.snapshots.empty() && summary.snapshots > 0) {
+    fmt::print(out, "snapshots {} in {}\n", format_bytes(summary.snapshots), control.snapshots.string());
+    std::istringstream lines(summary.snapshot_text);
+    for (std::string line; std::getline(lines, line);) fmt::print(out, "          {}\n", line);
+    total += summary.snapshots;
+  }
   std::fflush(out);
-  require_disk_space(control.checkpoint.parent_path(), 2 * checkpoint, "checkpoints");
+  if (total > 0) {
+    require_disk_space((control.checkpoint.empty() ? control.snapshots : control.checkpoint).parent_path(),
+                       total, summary.snapshots > 0 ? "snapshots and checkpoints" : "checkpoints");
+  }
 }
 
 void print_indicators(std::FILE* out, const Vibrations& v) {

@@ -14,6 +14,7 @@
 #include "soil/energy_guard.hpp"
 #include "soil/load_history.hpp"
 #include "soil/relaxation.hpp"
+#include "soil/snapshot_writer.hpp"
 #include "soil/surface_interpolation.hpp"
 #include "soil/wave_engine.hpp"
 
@@ -161,6 +162,7 @@ struct WaveSolver::Impl {
   long steps_per_output = 1, outputs = 0, preload_outputs = 0;
   double seconds_per_step = 0;
   RunIdentity identity;
+  std::unique_ptr<SnapshotWriter> snapshots;
 
   long steps() const { return (preload_outputs + outputs - 1) * steps_per_output + 1; }
   double time_of(long step) const {
@@ -266,6 +268,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& loads, const Solve
   const bool preloaded =
       start.cwiseProduct(taper).cwiseAbs().maxCoeff() > 1e-3 * loads.force.cwiseAbs().maxCoeff();
   preload_outputs = preloaded ? static_cast<long>(std::ceil(options.preload_time / output_step)) : 0;
+
+  snapshots = std::make_unique<SnapshotWriter>(site.snapshots, lattice,
+                                               OutputTimes{history.first_time(), output_step, outputs});
 
   identity = describe_run(site, loads, options);
   identity.push_back({"option threads", fmt::format("{}", threads)});  // sums differ in the last bits
@@ -386,6 +391,10 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
   GroundMotion motion = make_motion();
   RunPosition position = control.restart ? load(control, engine, motion) : RunPosition{};
   const long total = steps();
+  snapshots->set_folder(control.snapshots);
+  const bool takes_snapshots = !control.snapshots.empty();
+  const auto displacement = [&](int c, int X, int Y, int Z) { return engine.displacement(c, X, Y, Z); };
+  const auto velocity = [&](int c, int X, int Y, int Z) { return engine.velocity(c, X, Y, Z); };
   const auto tell = [&] {
     if (control.progress) control.progress(static_cast<double>(position.step) / static_cast<double>(total));
   };
@@ -402,6 +411,7 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
         motion.footprint_displacement(row, static_cast<Eigen::Index>(f)) = -weigh(
             footprints[f].mean, [&](const NodeWeight& n) { return engine.displacement(2, n.X, n.Y, n.Z); });
     }
+    if (row >= 0 && takes_snapshots) snapshots->begin(row, displacement, velocity);
     update_surface_forces(time_of(step));
     const double power = compute_power(engine);
     engine.advance(node_forces, output);
@@ -410,6 +420,7 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
     if (row >= 0) {
       motion.energy(row) = engine.energy();
       add_velocities(engine, row, motion);
+      if (takes_snapshots) snapshots->finish(row, velocity);
     }
     ++position.step;
 
@@ -478,6 +489,8 @@ RunSummary WaveSolver::compute_summary() {
   summary.time_step = impl.dt;
   summary.output_step = impl.output_step;
   summary.checkpoint = impl.compute_checkpoint_size();
+  summary.snapshots = impl.snapshots->size();
+  summary.snapshot_text = impl.snapshots->description();
   summary.steps = impl.steps();
   summary.expected_time = impl.seconds_per_step * static_cast<double>(summary.steps);
   return summary;

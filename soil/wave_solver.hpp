@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "soil/lattice.hpp"
 #include "soil/run_control.hpp"
@@ -44,10 +45,12 @@ struct SolverOptions {
 /// What a run will cost, known before it starts.
 struct RunSummary {
   long elements = 0, nodes = 0, dofs = 0;
-  double memory = 0;       ///< [byte] of the fields
-  double time_step = 0;    ///< [s]
-  double output_step = 0;  ///< [s]
-  double checkpoint = 0;   ///< [byte] of the file
+  double memory = 0;          ///< [byte] of the fields
+  double time_step = 0;       ///< [s]
+  double output_step = 0;     ///< [s]
+  double checkpoint = 0;      ///< [byte] of the file
+  double snapshots = 0;       ///< [byte] of all files
+  std::string snapshot_text;  ///< what they show, a line for each plane
   long steps = 0;
   double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel
 };
