@@ -218,7 +218,18 @@ void print_indicators(std::FILE* out, const Vibrations& v) {
   fmt::print(out, "\n{:<20} {:>12} {:>12} {:>8} {:>8}   (up to {} Hz)\n", "receiver", "PPV z", "PPV",
              "KB_Fmax", "VdB", v.highest_frequency);
   fmt::print(out, "{:<20} {:>12} {:>12} {:>8} {:>8}\n", "", "[mm/s]", "[mm/s]", "", "[dB]");
+  // Of many receivers, a line or a grid is told by its ends.
+  constexpr std::size_t most_rows = 24;
+  const auto is_told = [&](std::size_t r) {
+    const std::string& group = v.receivers[r].group;
+    return v.receivers.size() <= most_rows || group.empty() || r == 0 || v.receivers[r - 1].group != group ||
+           r + 1 == v.receivers.size() || v.receivers[r + 1].group != group;
+  };
   for (std::size_t r = 0; r < v.receivers.size(); ++r) {
+    if (!is_told(r)) {
+      if (is_told(r - 1)) fmt::print(out, "{:<20} (the others are in vibrations.h5)\n", "...");
+      continue;
+    }
     const Indicators& indicators = v.indicators[r];
     const std::string vdb = std::isfinite(indicators.vdb) ? fmt::format("{:.1f}", indicators.vdb) : "-";
     fmt::print(out, "{:<20} {:>12.4g} {:>12.4g} {:>8.3g} {:>8}\n", v.receivers[r].name,
