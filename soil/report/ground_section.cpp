@@ -141,9 +141,9 @@ void add_spectra(visu::Report& report, const ResultReader& ground, const Receive
 
 /// Peak particle velocity against distance, with the 10 dB within which a prediction can be believed.
 void add_decay(visu::Report& report, const Receivers& receivers, const MatrixXd& ppv) {
-  std::vector<Index> far;  // receivers on the axis have no place on a logarithmic distance
+  std::vector<Index> far;  // on the surface; on the axis there is no logarithm of the distance
   for (const Index i : receivers.near)
-    if (receivers.distance(i) > 0 && ppv(i, 3) > 0) far.push_back(i);
+    if (receivers.distance(i) > 0 && receivers.position(i, 2) == 0 && ppv(i, 3) > 0) far.push_back(i);
   if (far.size() < 2) return;
   const MatrixXd values = 1e3 * ppv(far, Eigen::all);
   const VectorXd distance = receivers.distance(far);
