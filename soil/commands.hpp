@@ -15,6 +15,12 @@ using Action = std::function<void(const std::string& command_line)>;
 Action add_mobility_command(CLI::App& app);
 Action add_predict_command(CLI::App& app);
 
+/// @throws InputError if the folder cannot be made
+void make_folder(const std::filesystem::path& folder);
+/// Renames an earlier file or folder, so that it does not look like this run's: vibrations.h5 becomes vibrations.previous.h5.
+/// @returns whether there was one  @throws InputError if that is not possible
+bool set_aside(const std::filesystem::path& result);
+
 /// Makes the folder and renames the `vibrations.h5` of an earlier run, so that it does not look like this run's.
 /// @returns path of the result to come  @throws InputError if that is not possible
 std::filesystem::path prepare_result(const std::filesystem::path& folder);

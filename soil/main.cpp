@@ -20,6 +20,7 @@
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
+#include "soil/stop_signal.hpp"
 #include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
@@ -40,9 +41,14 @@ Files (docs/formats.md describes them):
                     of the footprints. It appears when the run is complete. One from an earlier run is first
                     renamed to vibrations.previous.h5, so that a run that fails leaves none that looks new.
 
+  snapshots/        pictures of planes of the ground, if the site file asks for them: open the .pvd in ParaView
+  checkpoint.bin    the state of a run that is not complete. Ctrl-C, SIGTERM and a crash of the machine lose little:
+                    the same command with --restart goes on and gives the same bits. Removed at the end.
+
 Nothing is claimed above the highest frequency of the site file: the loads are passed unchanged up to it and
 fade out to nothing at 1.25 times it, and so does the motion in vibrations.h5.
-Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options.)";
+Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options, 130 or 143 stopped by SIGINT
+(Ctrl-C) or SIGTERM.)";
 
 const char* const report_footer = R"(
 Example:
@@ -57,6 +63,8 @@ struct RunArguments {
   bool dry_run = false;
   bool full_model = false;
   bool verify = false;
+  double checkpoint_every = 10;  // [min]
+  bool restart = false;
   SolverOptions options;
 };
 
@@ -96,6 +104,13 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->capture_default_str();
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
+  command
+      .add_option("--checkpoint-every", run.checkpoint_every,
+                  "Minutes between two checkpoints; 0: only when the run is stopped")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->capture_default_str()
+      ->type_name("MINUTES");
+  command.add_flag("--restart", run.restart, "Go on from the checkpoint in the output folder");
   command.add_flag("--verify", run.verify,
                    "Add the semi-analytical solution of the layered half-space to result and report");
 }
@@ -110,8 +125,37 @@ void print_comparison(const Vibrations& vibrations) {
   }
 }
 
+// Of a run, and of its part below a crossover frequency.
+std::vector<fs::path> checkpoints_of(const fs::path& folder) {
+  return {folder / "checkpoint.bin", folder / "checkpoint.low.bin"};
+}
+
+RunControl make_control(const RunArguments& arguments) {
+  RunControl control;
+  control.checkpoint = arguments.output / "checkpoint.bin";
+  control.checkpoint_interval = 60 * arguments.checkpoint_every;
+  control.restart = arguments.restart;
+  control.snapshots = arguments.output / "snapshots";
+  control.is_stop_wanted = [] { return StopSignal::number() != 0; };
+  control.warn = [](const std::string& sentence) { fmt::print(stderr, "soil: warning: {}\n", sentence); };
+  return control;
+}
+
 void run(RunArguments& arguments, const std::string& command_line) {
   const fs::path result = arguments.dry_run ? fs::path() : prepare_result(arguments.output);
+  if (!arguments.dry_run && !arguments.restart) {
+    bool had_checkpoint = false;
+    for (const fs::path& checkpoint : checkpoints_of(arguments.output)) {
+      had_checkpoint = set_aside(checkpoint) || had_checkpoint;
+    }
+    if (had_checkpoint) {
+      fmt::print(
+          stderr,
+          "soil: warning: {}: this run starts anew, without --restart; the checkpoint of the earlier one "
+          "is now checkpoint.previous.bin\n",
+          (arguments.output / "checkpoint.bin").string());
+    }
+  }
   const Site site = read_site(arguments.site);
   warn_of_unusual_values(arguments.site, site);
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
@@ -129,7 +173,9 @@ void run(RunArguments& arguments, const std::string& command_line) {
           fmt::format("{}, {}: {}", arguments.site.string(), arguments.loads.string(), error.what()));
     }
   }();
+  const RunControl control = make_control(arguments);
   print_run_summary(stdout, site, loads, solver);
+  print_file_summary(stdout, solver, control);
   if (arguments.dry_run) {
     return;
   }
@@ -141,13 +187,30 @@ void run(RunArguments& arguments, const std::string& command_line) {
     semi_analytical = compute_semi_analytical_motion(site, loads, dampings.at(arguments.damping),
                                                      arguments.options.threads);
   }
-  Vibrations vibrations = predict_vibrations(site, loads, solver);
+  if (!arguments.restart) set_aside(control.snapshots);
+  if (!site.snapshots.empty()) make_folder(control.snapshots);
+  Vibrations vibrations = predict_vibrations(site, loads, solver, stdout, control);
   vibrations.semi_analytical = std::move(semi_analytical);
   write_vibrations(result, vibrations,
                    {.program = "soil", .command = command_line, .convention = result_convention});
+  std::error_code ignored;
+  for (const fs::path& checkpoint : checkpoints_of(arguments.output)) fs::remove(checkpoint, ignored);
   print_indicators(stdout, vibrations);
   if (arguments.verify) print_comparison(vibrations);
   fmt::print("\n{}\n", result.string());
+}
+
+// As run(), with an end before the end on SIGINT and SIGTERM. Returns the exit status.
+int run_stoppable(RunArguments& arguments, const std::string& command_line) {
+  const StopSignal signal;
+  try {
+    run(arguments, command_line);
+    return 0;
+  } catch (const RunStopped& stopped) {
+    fmt::print(stderr, "soil: {}: {}\nTo go on: {}{}\n", StopSignal::name(), stopped.what(), command_line,
+               arguments.restart ? "" : " --restart");
+    return 128 + StopSignal::number();  // as a shell says it
+  }
 }
 
 void add_report_command(CLI::App& app, fs::path& folder) {
@@ -199,7 +262,7 @@ int run_program(int argc, char** argv) {
   }
   try {
     if (app.got_subcommand("run")) {
-      run(arguments, results::join_command_line(argc, argv));
+      return run_stoppable(arguments, results::join_command_line(argc, argv));
     } else if (app.got_subcommand("mobility")) {
       mobility(results::join_command_line(argc, argv));
     } else if (app.got_subcommand("predict")) {

@@ -6,10 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "easydyn/results/progress.hpp"
+#include "soil/disk_space.hpp"
 #include "soil/frequency_filter.hpp"
 
 namespace easydyn::soil {
@@ -125,10 +127,6 @@ int find_dictating_layer(const Site& site, const Lattice& lattice) {
   return crossing(shortest) < 0.5 * others ? lattice.layer[shortest] : -1;
 }
 
-std::string format_memory(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
-}
-
 }  // namespace
 
 WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options) {
@@ -179,19 +177,22 @@ void set_motion(Vibrations& v, GroundMotion motion) {
   update_indicators(v);
 }
 
-Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
-                              std::FILE* out) {
+Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver, std::FILE* out,
+                              const RunControl& control) {
   Vibrations v = describe_prediction(site, loads);
   add_solver(v.parameters, site, solver);
   std::unique_ptr<results::Progress> progress;
   if (out) {
     progress = std::make_unique<results::Progress>("waves", out);
   }
-  GroundMotion motion = solver.run([&](double fraction) {
+  RunControl with_progress = control;
+  with_progress.progress = [&, first = true](double fraction) mutable {
     if (progress) {
-      progress->update(fraction);
+      first ? progress->start_at(fraction) : progress->update(fraction);
     }
-  });
+    first = false;
+  };
+  GroundMotion motion = solver.run(with_progress);
   if (progress) {
     progress->finish();
   }
@@ -227,7 +228,7 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
         solver.options().crossover_frequency, low->nx(), low->ny(), low->nz(),
         static_cast<double>(low->dofs()) / 1e6, size(low->x), size(low->y), size(low->z));
   }
-  fmt::print(out, "memory    {}\n", format_memory(summary.memory));
+  fmt::print(out, "memory    {}\n", format_bytes(summary.memory));
   fmt::print(out, "steps     {} of {:.4g} ms\n", summary.steps, 1e3 * summary.time_step);
   if (const int layer = find_dictating_layer(site, lattice); layer >= 0) {
     const Layer& thin = site.layers[static_cast<std::size_t>(layer)];
@@ -238,11 +239,45 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
   std::fflush(out);
 }
 
+void print_file_summary(std::FILE* out, WaveSolver& solver, const RunControl& control) {
+  const RunSummary summary = solver.compute_summary();
+  double total = 0;
+  if (!control.checkpoint.empty()) {
+    fmt::print(out, "checkpoint {} {}\n", format_bytes(summary.checkpoint),
+               control.checkpoint_interval > 0
+                   ? "every " + results::format_duration(control.checkpoint_interval)
+                   : std::string("when stopped"));
+    total += 2 * summary.checkpoint;  // the new one is complete before the old one goes
+  }
+  if (!control.snapshots.empty() && summary.snapshots > 0) {
+    fmt::print(out, "snapshots {} in {}\n", format_bytes(summary.snapshots), control.snapshots.string());
+    std::istringstream lines(summary.snapshot_text);
+    for (std::string line; std::getline(lines, line);) fmt::print(out, "          {}\n", line);
+    total += summary.snapshots;
+  }
+  std::fflush(out);
+  if (total > 0) {
+    require_disk_space((control.checkpoint.empty() ? control.snapshots : control.checkpoint).parent_path(),
+                       total, summary.snapshots > 0 ? "snapshots and checkpoints" : "checkpoints");
+  }
+}
+
 void print_indicators(std::FILE* out, const Vibrations& v) {
   fmt::print(out, "\n{:<20} {:>12} {:>12} {:>8} {:>8}   (up to {} Hz)\n", "receiver", "PPV z", "PPV",
              "KB_Fmax", "VdB", v.highest_frequency);
   fmt::print(out, "{:<20} {:>12} {:>12} {:>8} {:>8}\n", "", "[mm/s]", "[mm/s]", "", "[dB]");
+  // Of many receivers, a line or a grid is told by its ends.
+  constexpr std::size_t most_rows = 24;
+  const auto is_told = [&](std::size_t r) {
+    const std::string& group = v.receivers[r].group;
+    return v.receivers.size() <= most_rows || group.empty() || r == 0 || v.receivers[r - 1].group != group ||
+           r + 1 == v.receivers.size() || v.receivers[r + 1].group != group;
+  };
   for (std::size_t r = 0; r < v.receivers.size(); ++r) {
+    if (!is_told(r)) {
+      if (is_told(r - 1)) fmt::print(out, "{:<20} (the others are in vibrations.h5)\n", "...");
+      continue;
+    }
     const Indicators& indicators = v.indicators[r];
     const std::string vdb = std::isfinite(indicators.vdb) ? fmt::format("{:.1f}", indicators.vdb) : "-";
     fmt::print(out, "{:<20} {:>12.4g} {:>12.4g} {:>8.3g} {:>8}\n", v.receivers[r].name,

@@ -17,9 +17,10 @@ namespace easydyn::soil {
 WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
 
 /// Runs the solver and draws up the indicators. Progress goes to `out` (nullptr: silent).
-/// @throws SolverError if the motion grows without bound
+/// @param control  what accompanies the run; its `progress` is not used
+/// @throws SolverError if the motion grows without bound, RunStopped if the run was stopped
 Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver,
-                              std::FILE* out = stdout);
+                              std::FILE* out = stdout, const RunControl& control = {});
 
 /// Everything but the motion and what depends on the solver: receivers, footprints, site.
 Vibrations describe_prediction(const Site& site, const SurfaceLoads& loads);
@@ -32,6 +33,10 @@ void set_motion(Vibrations& vibrations, GroundMotion motion);
 
 /// Mesh, memory, steps and expected time, before a run.
 void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loads, WaveSolver& solver);
+
+/// Size of the checkpoint and the snapshots that a run will write.
+/// @throws InputError if the disk has no room for them
+void print_file_summary(std::FILE* out, WaveSolver& solver, const RunControl& control);
 
 /// PPV, KB_Fmax and VdB of every receiver as a table.
 void print_indicators(std::FILE* out, const Vibrations& vibrations);

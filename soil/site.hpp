@@ -41,6 +41,17 @@ struct Block {
 struct Receiver {
   std::string name;
   std::array<double, 3> position{};  ///< x, y, z [m]
+  std::string group{};               ///< the line or grid that it belongs to; empty: none
+};
+
+/// A plane across an axis, x = c, y = c or z = c, whose motion is written as pictures (snapshot_writer.hpp).
+struct Snapshot {
+  std::string name;  ///< of its files
+  int axis = 2;      ///< across the plane: 0, 1, 2 for x, y, z
+  double place = 0;  ///< c [m]
+  double step = 0;   ///< [s] > 0 between two pictures, made a whole number of output steps
+  double begin = -std::numeric_limits<double>::infinity();  ///< [s]
+  double end = std::numeric_limits<double>::infinity();     ///< [s]
 };
 
 /// Everything that `soil run` needs besides the loads: what site.toml holds.
@@ -49,6 +60,7 @@ struct Site {
   std::vector<Layer> layers;  ///< at least one; the last is the half-space
   std::vector<Block> blocks;  ///< where two overlap, the later one holds
   std::vector<Receiver> receivers;
+  std::vector<Snapshot> snapshots;
   double highest_frequency = 50;       ///< [Hz]; the mesh resolves it, nothing above it is claimed
   double damping_frequency = 20;       ///< [Hz] at which Layer::damping, cs and cp hold
   double points_per_wavelength = 5.5;  ///< shortest shear wavelength / mean GLL spacing

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "easydyn/error.hpp"
+#include "soil/site_recordings.hpp"
 #include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
@@ -145,30 +146,43 @@ Block read_block(TomlTable& table) {
   return block;
 }
 
-Receiver read_receiver(TomlTable& table) {
-  table.refuse_other_keys({"name", "position", "distance", "source"});
-  Receiver receiver;
-  receiver.name = table.text("name");
-  table.set_object(fmt::format("receiver \"{}\"", receiver.name));
-  table.text("source", "");
-  if (table.has("position") == table.has("distance")) {
-    table.fail(table.has("position") ? "both position and distance are given, must be one of them"
-                                     : "no place: give position = [x, y, z] or distance");
+void read_receivers(const TomlTable& root, Site& site) {
+  std::set<std::string> names;
+  const auto add = [&](const TomlTable& table, const std::vector<Receiver>& receivers) {
+    for (const Receiver& receiver : receivers) {
+      if (!names.insert(receiver.name).second) {
+        table.fail("name", receiver.group.empty()
+                               ? "the name appears twice"
+                               : fmt::format("a receiver \"{}\" is there already", receiver.name));
+      }
+      site.receivers.push_back(receiver);
+    }
+  };
+  for (TomlTable& table : root.tables("receiver")) {
+    const Receiver receiver = read_receiver(table);
+    add(table, {receiver});
   }
-  if (table.has("distance")) {
-    receiver.position = {0, table.number("distance", "m", any_number), 0};
-    return receiver;
+  for (TomlTable& table : root.tables("receiver_line")) {
+    const std::vector<Receiver> line = read_receiver_line(table);
+    add(table, line);
   }
-  const std::vector<double> position = table.numbers("position", "m");
-  if (position.size() != 2 && position.size() != 3) {
-    table.fail("position",
-               fmt::format("position has {} numbers, must have 2 (x, y) or 3 (x, y, z)", position.size()));
+  for (TomlTable& table : root.tables("receiver_grid")) {
+    const std::vector<Receiver> grid = read_receiver_grid(table);
+    add(table, grid);
   }
-  receiver.position = {position[0], position[1], position.size() == 3 ? position[2] : 0};
-  if (receiver.position[2] > 0) {
-    table.fail("position", fmt::format("z = {} m, must be <= 0 (0 is the surface)", receiver.position[2]));
+  if (site.receivers.empty()) {
+    root.fail("no receiver: give at least one [[receiver]], [[receiver_line]] or [[receiver_grid]]");
   }
-  return receiver;
+}
+
+void read_snapshots(const TomlTable& root, Site& site) {
+  std::set<std::string> names;
+  for (TomlTable& table : root.tables("snapshot")) {
+    site.snapshots.push_back(read_snapshot(table));
+    if (!names.insert(site.snapshots.back().name).second) {
+      table.fail("name", "the name appears twice");
+    }
+  }
 }
 
 // A table of settings, all optional; the keys that it has are noted in the site.
@@ -208,7 +222,8 @@ Site parse_site(const std::string& text, const std::filesystem::path& path) {
   site.text = text;
   const toml::table parsed = parse(site.text, path);
   const TomlTable root(path, "", parsed);
-  root.refuse_other_keys({"name", "source", "layer", "block", "receiver", "solver", "loads"});
+  root.refuse_other_keys({"name", "source", "layer", "block", "receiver", "receiver_line", "receiver_grid",
+                          "snapshot", "solver", "loads"});
   site.name = root.text("name", path.stem().string());
   root.text("source", "");
 
@@ -223,18 +238,8 @@ Site parse_site(const std::string& text, const std::filesystem::path& path) {
   for (TomlTable& table : root.tables("block")) {
     site.blocks.push_back(read_block(table));
   }
-
-  std::vector<TomlTable> receivers = root.tables("receiver");
-  if (receivers.empty()) {
-    root.fail("no receiver: give at least one [[receiver]]");
-  }
-  std::set<std::string> names;
-  for (TomlTable& table : receivers) {
-    site.receivers.push_back(read_receiver(table));
-    if (!names.insert(site.receivers.back().name).second) {
-      table.fail("name", "the name appears twice");
-    }
-  }
+  read_receivers(root, site);
+  read_snapshots(root, site);
   read_settings(root, site);
   return site;
 }

@@ -34,6 +34,22 @@ namespace easydyn::soil {
 ///     distance = 8                            # [m] from the track's axis: (0, 8, 0)
 ///     # position = [0, 8, -1]                 # [m] in place of distance: x, y or x, y, z with z <= 0
 ///
+///     [[receiver_line]]                       # evenly spaced, both ends included; "A (0, 5, 0)", ...
+///     name = "A"                              # optional: "receiver_line 1"
+///     from = [0, 5]                           # [m] x, y or x, y, z with z <= 0
+///     to = [0, 45]                            # [m]
+///     spacing = 2                             # [m], a whole number of times in the length; or count = 21
+///     [[receiver_grid]]                       # parallel to the axes, from one corner to the opposite one
+///     from = [-10, 5, 0]
+///     to = [10, 25, 0]
+///     spacing = [5, 5, 1]                     # [m] along each axis; or count = [5, 5, 1]
+///
+///     [[snapshot]]                            # optional: pictures of a plane, for ParaView
+///     name = "surface"                        # optional: the name of its files
+///     z = 0                                   # [m] the plane: one of x, y and z (<= 0)
+///     step = 0.01                             # [s]
+///     begin = 0                               # [s] optional, like end
+///
 ///     [solver]                                # optional, like each of its keys
 ///     highest_frequency = 50                  # [Hz]
 ///     damping_frequency = 20                  # [Hz]

@@ -141,8 +141,9 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& v,
                       const results::Provenance& provenance) {
   check_sizes(v);
   Eigen::MatrixXd position(static_cast<Eigen::Index>(v.receivers.size()), 3);
-  std::vector<std::string> names;
+  std::vector<std::string> names, groups;
   for (const Receiver& receiver : v.receivers) {
+    groups.push_back(receiver.group);
     position.row(static_cast<Eigen::Index>(names.size())) = Eigen::RowVector3d::Map(receiver.position.data());
     names.push_back(receiver.name);
   }
@@ -154,6 +155,7 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& v,
   file.write_matrix("/receivers/position", position,
                     {.units = "m", .description = "position of the receivers", .frame = axes});
   file.write_names("/receivers/names", names, "names of the receivers");
+  file.write_names("/receivers/groups", groups, "line or grid that each receiver belongs to; empty: none");
   file.write_matrix("/velocity/x", v.vx,
                     {.units = "m/s", .description = "ground velocity along x", .frame = axes});
   file.write_matrix("/velocity/y", v.vy,
@@ -191,12 +193,16 @@ Vibrations read_vibrations(const std::filesystem::path& path) {
   v.parameters = visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   v.site_text = reader.read_text("/site");
   const std::vector<std::string> names = reader.read_names("/receivers/names");
+  std::vector<std::string> groups(names.size());  // files of earlier versions have none
+  if (reader.has("/receivers/groups")) groups = reader.read_names("/receivers/groups");
+  groups.resize(names.size());
   const Eigen::MatrixXd position = reader.read_matrix("/receivers/position");
   try {
     require_shape("receiver position", position, static_cast<Eigen::Index>(names.size()), 3);
     for (Eigen::Index r = 0; r < position.rows(); ++r) {
-      v.receivers.push_back(
-          {names[static_cast<std::size_t>(r)], {position(r, 0), position(r, 1), position(r, 2)}});
+      v.receivers.push_back({names[static_cast<std::size_t>(r)],
+                             {position(r, 0), position(r, 1), position(r, 2)},
+                             groups[static_cast<std::size_t>(r)]});
     }
     read_indicators(reader, v);
     check_sizes(v);

@@ -639,6 +639,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
       }
   }
   if constexpr (account) {
+    scratch.kinetic += 0.5 * line_mass * sum_of<T>(kinetic);
     scratch.energy += 0.5 * line_mass * sum_of<T>(kinetic) + 0.5 * sum_of<T>(strain);
     scratch.work += 0.5 * dt_ * sum_of<T>(work);
   }
@@ -661,11 +662,12 @@ void WaveEngine<T>::advance(const std::vector<SurfaceNodeForce>& forces, bool ac
     run_sweep(step_field_, [this](Scratch& s, int Y, int Z, T* f) { advance_line<false>(s, Y, Z, f); });
     return;
   }
-  for (Scratch& scratch : scratch_) scratch.energy = scratch.work = 0;
+  for (Scratch& scratch : scratch_) scratch.energy = scratch.kinetic = scratch.work = 0;
   run_sweep(step_field_, [this](Scratch& s, int Y, int Z, T* f) { advance_line<true>(s, Y, Z, f); });
-  energy_ = step_work_ = 0;
+  energy_ = kinetic_energy_ = step_work_ = 0;
   for (const Scratch& scratch : scratch_) {
     energy_ += scratch.energy;
+    kinetic_energy_ += scratch.kinetic;
     step_work_ += scratch.work;
   }
 }

@@ -76,6 +76,8 @@ class WaveEngine {
   void advance(const std::vector<SurfaceNodeForce>& forces, bool account);
   /// Kinetic + strain energy half a step after the last step with `account` [J]; NaN or inf if unstable.
   double energy() const { return energy_; }
+  /// The kinetic part of it. An unstable step keeps the sum, with a strain energy below zero, but not its parts.
+  double kinetic_energy() const { return kinetic_energy_; }
   /// Work of the surface forces over the last step with `account` [J].
   double step_work() const { return step_work_; }
 
@@ -85,6 +87,14 @@ class WaveEngine {
     u_[index(component, X, Y, Z)] = static_cast<T>(value);
   }
   void set_to_rest();
+  /// Calls use(data, bytes) for each field that a step takes over from the one before it.
+  template <class Use>
+  void visit_state(const Use& use) {
+    const auto visit = [&](AlignedVector<T>& field) { use(field.data(), field.size() * sizeof(T)); };
+    visit(u_);
+    visit(v_);
+    for (AlignedVector<T>& zeta : zeta_) visit(zeta);
+  }
   /// f = K u with the present displacement, springs included, ordered [component][Z][Y][X].
   std::vector<double> compute_internal_force();
   double mass(int X, int Y, int Z) const;  ///< nodal [kg]; zero inside open blocks
@@ -113,7 +123,7 @@ class WaveEngine {
   };
   struct Scratch {  // of one thread
     AlignedVector<T> w, f, plane[2], seam_low, seam_high;
-    double energy = 0, work = 0, sum_xkx = 0, sum_xmx = 0;
+    double energy = 0, kinetic = 0, work = 0, sum_xkx = 0, sum_xmx = 0;
   };
 
   std::size_t line_size() const { return static_cast<std::size_t>(3) * N_ * stride_; }
@@ -193,7 +203,7 @@ class WaveEngine {
   // Surface forces of the step: lines of the top plane [Y][component][N][stride], divided by m_x.
   AlignedVector<T> load_;
   std::vector<char> loaded_row_;
-  double energy_ = 0, step_work_ = 0;
+  double energy_ = 0, kinetic_energy_ = 0, step_work_ = 0;
 };
 
 }  // namespace easydyn::soil

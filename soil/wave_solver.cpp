@@ -12,9 +12,12 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
+#include "soil/checkpoint.hpp"
+#include "soil/energy_guard.hpp"
 #include "soil/frequency_filter.hpp"
 #include "soil/load_history.hpp"
 #include "soil/relaxation.hpp"
+#include "soil/snapshot_writer.hpp"
 #include "soil/surface_interpolation.hpp"
 #include "soil/wave_engine.hpp"
 
@@ -168,6 +171,12 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
+/// Where a run stands between two steps, beside its fields and records.
+struct RunPosition {
+  long step = 0;  // the next one
+  EnergyGuard guard;
+};
+
 struct WaveSolver::Impl {
   /// @param far_frequency  see LatticeOptions
   /// @param start_         time of the first output [s]; NaN: that of the first load
@@ -187,9 +196,22 @@ struct WaveSolver::Impl {
     return double_engine ? f(*double_engine) : f(*float_engine);
   }
   template <class T>
-  GroundMotion run(WaveEngine<T>& engine, const std::function<void(double)>& progress);
-  GroundMotion run(const std::function<void(double)>& progress);
+  GroundMotion run(WaveEngine<T>& engine, const RunControl& control);
+  GroundMotion run(const RunControl& control);
   double measure_step();  // [s] of wall clock
+  GroundMotion make_motion() const;
+  template <class T>
+  void add_velocities(WaveEngine<T>& engine, Eigen::Index row, GroundMotion& motion) const;
+  template <class T>
+  double compute_power(const WaveEngine<T>& engine) const;  ///< of the surface forces [W]
+  template <class T>
+  void check_energy(const WaveEngine<T>& engine, const EnergyGuard& guard, long step) const;
+  double compute_checkpoint_size();
+  template <class T>
+  void save(const RunControl& control, WaveEngine<T>& engine, GroundMotion& motion,
+            RunPosition position) const;
+  template <class T>
+  RunPosition load(const RunControl& control, WaveEngine<T>& engine, GroundMotion& motion) const;
 
   Site site;
   SolverOptions options;
@@ -208,8 +230,17 @@ struct WaveSolver::Impl {
   long steps_per_output = 1, outputs = 0, preload_outputs = 0;
   std::unique_ptr<Impl> low;  // what is below the crossover, if there is one
   double seconds_per_step = 0;
+  RunIdentity identity;
+  std::unique_ptr<SnapshotWriter> snapshots;
 
   long steps() const { return (preload_outputs + outputs - 1) * steps_per_output + 1; }
+  double time_of(long step) const {
+    return start - static_cast<double>(preload_outputs) * output_step + static_cast<double>(step) * dt;
+  }
+  /// Rows of the output that the first `step` steps have filled.
+  Eigen::Index rows_before(long step) const {
+    return std::max(0L, (step + steps_per_output - 1) / steps_per_output - preload_outputs);
+  }
 };
 
 WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const SolverOptions& options_,
@@ -333,6 +364,11 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
   preload_outputs = static_cast<long>(std::ceil(before / output_step - 1e-9));
 
   if (options.crossover_frequency > 0) {
+    if (!site.snapshots.empty())
+      throw ModelError(fmt::format(
+          "site: snapshots cannot be taken with a crossover frequency of {} Hz: the motion is the sum of "
+          "two models on lattices of their own",
+          options.crossover_frequency));
     SolverOptions low_options = options;
     low_options.crossover_frequency = 0;
     low_options.output_step = output_step;
@@ -340,6 +376,14 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     low = std::make_unique<Impl>(site, low_loads, low_options, crossover_width * options.crossover_frequency,
                                  start);
   }
+
+  snapshots =
+      std::make_unique<SnapshotWriter>(site.snapshots, lattice, OutputTimes{start, output_step, outputs});
+
+  identity = describe_run(site, loads, options);
+  identity.push_back({"option threads", fmt::format("{}", threads)});  // sums differ in the last bits
+  identity.push_back({"number of degrees of freedom", fmt::format("{}", lattice.dofs())});
+  identity.push_back({"time step", fmt::format("{} s", dt)});
 }
 
 void WaveSolver::Impl::check_nodes_are_in_the_ground() {
@@ -367,64 +411,167 @@ void WaveSolver::Impl::update_surface_forces(double t) {
   }
 }
 
-template <class T>
-GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const std::function<void(double)>& progress) {
-  engine.set_to_rest();
+GroundMotion WaveSolver::Impl::make_motion() const {
   const Eigen::Index nt = outputs, nr = static_cast<Eigen::Index>(receivers.size()),
                      nl = static_cast<Eigen::Index>(footprints.size());
   GroundMotion motion;
   motion.taper = taper;
-  motion.time.resize(nt);
-  motion.energy.resize(nt);
-  Eigen::MatrixXd* const velocity[3] = {&motion.vx, &motion.vy, &motion.vz};
-  for (Eigen::MatrixXd* v : velocity) *v = Eigen::MatrixXd::Zero(nt, nr);
-  motion.footprint_displacement.resize(nt, nl);
+  motion.time = Eigen::VectorXd::Zero(nt);
+  motion.energy = Eigen::VectorXd::Zero(nt);
+  for (Eigen::MatrixXd* v : {&motion.vx, &motion.vy, &motion.vz}) *v = Eigen::MatrixXd::Zero(nt, nr);
+  motion.footprint_displacement = Eigen::MatrixXd::Zero(nt, nl);
+  return motion;
+}
 
-  const double t0 = start - static_cast<double>(preload_outputs) * output_step;
-  const long total = steps();
-  auto told = std::chrono::steady_clock::now();
-  // Velocity at an output time: mean of the half steps before and after it.
-  const auto add_velocities = [&](Eigen::Index row) {
-    for (Eigen::Index r = 0; r < nr; ++r) {
-      const ReceiverWeights& receiver = receivers[static_cast<std::size_t>(r)];
-      for (int c = 0; c < 3; ++c) {
-        const double sign = (receiver.mirrored_x && (c == 0) != odd_x ? -1 : 1) *
-                            (receiver.mirrored_y && (c == 1) != odd_y ? -1 : 1);
-        (*velocity[c])(row, r) += 0.5 * sign * weigh(receiver.nodes, [&](const NodeWeight& n) {
-                                    return engine.velocity(c, n.X, n.Y, n.Z);
-                                  });
-      }
+/// Velocity at an output time: mean of the half steps before and after it.
+template <class T>
+void WaveSolver::Impl::add_velocities(WaveEngine<T>& engine, Eigen::Index row, GroundMotion& motion) const {
+  Eigen::MatrixXd* const velocity[3] = {&motion.vx, &motion.vy, &motion.vz};
+  for (std::size_t r = 0; r < receivers.size(); ++r) {
+    const ReceiverWeights& receiver = receivers[r];
+    for (int c = 0; c < 3; ++c) {
+      const double sign = (receiver.mirrored_x && (c == 0) != odd_x ? -1 : 1) *
+                          (receiver.mirrored_y && (c == 1) != odd_y ? -1 : 1);
+      (*velocity[c])(row, static_cast<Eigen::Index>(r)) +=
+          0.5 * sign *
+          weigh(receiver.nodes, [&](const NodeWeight& n) { return engine.velocity(c, n.X, n.Y, n.Z); });
     }
+  }
+}
+
+template <class T>
+double WaveSolver::Impl::compute_power(const WaveEngine<T>& engine) const {
+  const int top = engine.nodes_z() - 1;
+  double power = 0;
+  for (const SurfaceNodeForce& n : node_forces)
+    power += n.force * engine.velocity(n.component, n.X, n.Y, top);
+  return power;
+}
+
+template <class T>
+void WaveSolver::Impl::check_energy(const WaveEngine<T>& engine, const EnergyGuard& guard, long step) const {
+  const auto fail = [&](const std::string& what) {
+    throw SolverError(fmt::format(
+        "wave solver: {} at t = {:.6g} s, step {} of {} (dt = {:.4g} s): lower step_safety (now {}) or use "
+        "double_precision",
+        what, time_of(step), step, steps(), dt, options.step_safety));
   };
-  for (long step = 0; step < total; ++step) {
+  if (!guard.is_finite(engine.energy())) fail("the motion is no longer finite");
+  if (!guard.is_explained(engine.kinetic_energy()))
+    fail(
+        fmt::format("the motion grows by itself: its kinetic energy of {:.3g} J is more than {} times the "
+                    "work of the loads, {:.3g} J,",
+                    engine.kinetic_energy(), EnergyGuard::tolerance, guard.most_work()));
+}
+
+/// Calls use(data, bytes) for the records of the first `rows` output times.
+template <class Use>
+void visit_records(GroundMotion& motion, Eigen::Index rows, const Use& use) {
+  const auto bytes = static_cast<std::size_t>(rows) * sizeof(double);
+  use(motion.time.data(), bytes);
+  use(motion.energy.data(), bytes);
+  for (Eigen::MatrixXd* record : {&motion.vx, &motion.vy, &motion.vz, &motion.footprint_displacement})
+    for (Eigen::Index j = 0; j < record->cols(); ++j) use(record->col(j).data(), bytes);
+}
+
+double WaveSolver::Impl::compute_checkpoint_size() {
+  double bytes = 2048;  // identity
+  with_engine([&](auto& engine) {
+    engine.visit_state([&](const void*, std::size_t field) { bytes += static_cast<double>(field); });
+  });
+  return bytes + 8.0 * static_cast<double>(outputs) *
+                     static_cast<double>(2 + 3 * receivers.size() + footprints.size());
+}
+
+template <class T>
+void WaveSolver::Impl::save(const RunControl& control, WaveEngine<T>& engine, GroundMotion& motion,
+                            RunPosition position) const {
+  CheckpointWriter file(control.checkpoint, identity);
+  const auto write = [&](const void* data, std::size_t bytes) { file.write(data, bytes); };
+  file.write_value(position);
+  visit_records(motion, rows_before(position.step), write);
+  engine.visit_state(write);
+  file.commit();
+}
+
+template <class T>
+RunPosition WaveSolver::Impl::load(const RunControl& control, WaveEngine<T>& engine,
+                                   GroundMotion& motion) const {
+  CheckpointReader file(control.checkpoint, identity);
+  const auto read = [&](void* data, std::size_t bytes) { file.read(data, bytes); };
+  RunPosition position;
+  file.read_value(position);
+  if (position.step < 0 || position.step > steps())
+    throw InputError(
+        fmt::format("{}: is damaged: step {} of {}", control.checkpoint.string(), position.step, steps()));
+  visit_records(motion, rows_before(position.step), read);
+  engine.visit_state(read);
+  file.finish();
+  return position;
+}
+
+template <class T>
+GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& control) {
+  engine.set_to_rest();
+  GroundMotion motion = make_motion();
+  RunPosition position = control.restart ? load(control, engine, motion) : RunPosition{};
+  const long total = steps();
+  snapshots->set_folder(control.snapshots);
+  const bool takes_snapshots = !control.snapshots.empty();
+  const auto displacement = [&](int c, int X, int Y, int Z) { return engine.displacement(c, X, Y, Z); };
+  const auto velocity = [&](int c, int X, int Y, int Z) { return engine.velocity(c, X, Y, Z); };
+  const auto tell = [&] {
+    if (control.progress) control.progress(static_cast<double>(position.step) / static_cast<double>(total));
+  };
+  tell();
+  auto told = std::chrono::steady_clock::now(), saved = told;
+  while (position.step < total) {
+    const long step = position.step;
     const bool output = step % steps_per_output == 0;
     const Eigen::Index row = output ? step / steps_per_output - preload_outputs : -1;
-    const double t = t0 + static_cast<double>(step) * dt;
     if (row >= 0) {
-      motion.time(row) = t;
-      add_velocities(row);
-      for (Eigen::Index f = 0; f < nl; ++f) {
-        const int component = component_of(directions[static_cast<std::size_t>(f)]);
-        motion.footprint_displacement(row, f) =
-            (component == 2 ? -1 : 1) *
-            weigh(footprints[static_cast<std::size_t>(f)].mean,
-                  [&](const NodeWeight& n) { return engine.displacement(component, n.X, n.Y, n.Z); });
+      motion.time(row) = time_of(step);
+      add_velocities(engine, row, motion);
+      for (std::size_t f = 0; f < footprints.size(); ++f) {
+        const int component = component_of(directions[f]);
+        motion.footprint_displacement(row, static_cast<Eigen::Index>(f)) =
+            (component == 2 ? -1 : 1) * weigh(footprints[f].mean, [&](const NodeWeight& n) {
+              return engine.displacement(component, n.X, n.Y, n.Z);
+            });
       }
     }
-    update_surface_forces(t);
+    if (row >= 0 && takes_snapshots) snapshots->begin(row, displacement, velocity);
+    update_surface_forces(time_of(step));
+    const double power = compute_power(engine);
     engine.advance(node_forces, output);
-    if (output && !std::isfinite(engine.energy()))
-      throw SolverError(
-          fmt::format("wave solver: the motion is no longer finite at t = {:.6g} s, step {} of {} (dt = "
-                      "{:.4g} s): lower step_safety (now {}) or use double_precision",
-                      t, step, total, dt, options.step_safety));
+    position.guard.add_work(0.5 * dt * (power + compute_power(engine)));
+    if (output) check_energy(engine, position.guard, step);
     if (row >= 0) {
       motion.energy(row) = engine.energy();
-      add_velocities(row);
+      add_velocities(engine, row, motion);
+      if (takes_snapshots) snapshots->finish(row, velocity);
     }
-    if (progress && (seconds_since(told) > 0.25 || step + 1 == total)) {
+    ++position.step;
+
+    if (seconds_since(told) > 0.25 || position.step == total) {
       told = std::chrono::steady_clock::now();
-      progress(static_cast<double>(step + 1) / static_cast<double>(total));
+      tell();
+    }
+    if (position.step == total) break;
+    if (control.is_stop_wanted && control.is_stop_wanted()) {
+      if (!control.checkpoint.empty()) save(control, engine, motion, position);
+      throw RunStopped(
+          fmt::format("stopped at t = {:.6g} s, after step {} of {}", time_of(step), position.step, total),
+          position.step, total);
+    }
+    if (!control.checkpoint.empty() && control.checkpoint_interval > 0 &&
+        seconds_since(saved) >= control.checkpoint_interval) {
+      try {
+        save(control, engine, motion, position);
+      } catch (const InputError& error) {  // no reason to lose what has been computed
+        if (control.warn) control.warn(fmt::format("{}; the run goes on", error.what()));
+      }
+      saved = std::chrono::steady_clock::now();
     }
   }
   return motion;
@@ -465,20 +612,41 @@ double WaveSolver::Impl::measure_step() {
   return seconds_per_step;
 }
 
-GroundMotion WaveSolver::Impl::run(const std::function<void(double)>& progress) {
-  const auto run_one = [](Impl& impl, const std::function<void(double)>& tell) {
-    return impl.with_engine([&](auto& engine) { return impl.run(engine, tell); });
+/// Beside the checkpoint of a run with a crossover frequency, that of its part below; empty without checkpoints.
+std::filesystem::path low_checkpoint_of(const std::filesystem::path& checkpoint) {
+  if (checkpoint.empty()) return {};
+  std::filesystem::path low = checkpoint;
+  low.replace_filename(checkpoint.stem().string() + ".low" + checkpoint.extension().string());
+  return low;
+}
+
+GroundMotion WaveSolver::Impl::run(const RunControl& control) {
+  const auto run_one = [](Impl& impl, const RunControl& with) {
+    return impl.with_engine([&](auto& engine) { return impl.run(engine, with); });
   };
-  if (!low) return run_one(*this, progress);
+  if (!low) return run_one(*this, control);
   const double work = static_cast<double>(lattice.dofs()) * static_cast<double>(steps());
   const double low_work = static_cast<double>(low->lattice.dofs()) * static_cast<double>(low->steps());
-  const auto tell = [&](double from, double share) -> std::function<void(double)> {
-    if (!progress) return {};
-    return [&progress, from, share](double fraction) { progress(from + share * fraction); };
-  };
   const double low_share = low_work / (work + low_work);
-  const GroundMotion below = run_one(*low, tell(0, low_share));
-  GroundMotion motion = run_one(*this, tell(low_share, 1 - low_share));
+  // Both parts one after the other; each has a checkpoint of its own, and begins anew where it has none yet.
+  const auto part = [&](double from, double share, const std::filesystem::path& checkpoint) {
+    RunControl of_part = control;
+    of_part.checkpoint = checkpoint;
+    of_part.restart = control.restart && std::filesystem::exists(checkpoint);
+    if (control.progress)
+      of_part.progress = [&control, from, share](double fraction) {
+        control.progress(from + share * fraction);
+      };
+    return of_part;
+  };
+  const std::filesystem::path low_checkpoint = low_checkpoint_of(control.checkpoint);
+  if (control.restart && !std::filesystem::exists(control.checkpoint) &&
+      !std::filesystem::exists(low_checkpoint))
+    throw InputError(fmt::format("{}: cannot be read: there is no such file", control.checkpoint.string()));
+  RunControl below_control = part(0, low_share, low_checkpoint);
+  below_control.snapshots.clear();
+  const GroundMotion below = run_one(*low, below_control);
+  GroundMotion motion = run_one(*this, part(low_share, 1 - low_share, control.checkpoint));
   motion.vx += below.vx;
   motion.vy += below.vy;
   motion.vz += below.vz;
@@ -495,6 +663,10 @@ RunSummary WaveSolver::compute_summary() {
   summary.dofs = impl.lattice.dofs();
   summary.memory = impl.memory;
   summary.time_step = impl.dt;
+  summary.output_step = impl.output_step;
+  summary.checkpoint = impl.compute_checkpoint_size();
+  summary.snapshots = impl.snapshots->size();
+  summary.snapshot_text = impl.snapshots->description();
   summary.steps = impl.steps();
   summary.expected_time = impl.measure_step() * static_cast<double>(summary.steps);
   if (impl.low) {
@@ -509,7 +681,13 @@ const Lattice* WaveSolver::low_lattice() const {
 }
 
 GroundMotion WaveSolver::run(const std::function<void(double)>& progress) {
-  return impl_->run(progress);
+  RunControl control;
+  control.progress = progress;
+  return run(control);
+}
+
+GroundMotion WaveSolver::run(const RunControl& control) {
+  return impl_->run(control);
 }
 
 }  // namespace easydyn::soil

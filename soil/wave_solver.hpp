@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <string>
 
 #include "soil/lattice.hpp"
+#include "soil/run_control.hpp"
 #include "soil/site.hpp"
 #include "soil/surface_loads.hpp"
 
@@ -47,8 +49,12 @@ struct SolverOptions {
 /// What a run will cost, known before it starts.
 struct RunSummary {
   long elements = 0, nodes = 0, dofs = 0;
-  double memory = 0;     ///< [byte] of the fields, those below a crossover included
-  double time_step = 0;  ///< [s]
+  double memory = 0;          ///< [byte] of the fields, those below a crossover included
+  double time_step = 0;       ///< [s]
+  double output_step = 0;     ///< [s]
+  double checkpoint = 0;      ///< [byte] of the file
+  double snapshots = 0;       ///< [byte] of all files
+  std::string snapshot_text;  ///< what they show, a line for each plane
   long steps = 0;
   double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel, all lattices
 };
@@ -94,6 +100,12 @@ class WaveSolver {
   /// Runs from rest. `progress` gets the fraction done, 0..1, at most a few times per second.
   /// @throws SolverError if the motion grows without bound (time, step and what to try)
   GroundMotion run(const std::function<void(double fraction)>& progress = {});
+  /// The same with checkpoints and an end before the end. A run that goes on from a checkpoint gives the same
+  /// bits as one that was never stopped.
+  /// @throws RunStopped if asked to stop: the checkpoint has been written, if there is to be one
+  /// @throws InputError if the checkpoint to go on from is missing, damaged or of another run, or the last one
+  ///         cannot be written
+  GroundMotion run(const RunControl& control);
 
  private:
   struct Impl;

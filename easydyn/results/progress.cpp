@@ -8,6 +8,11 @@
 #include <utility>
 
 namespace easydyn::results {
+namespace {
+
+constexpr double longest_silence = 600;  // [s] in a log
+
+}  // namespace
 
 std::string format_duration(double seconds) {
   if (seconds < 9.95) {
@@ -36,19 +41,26 @@ Progress::~Progress() {
   }
 }
 
+void Progress::start_at(double fraction) {
+  first_fraction_ = std::clamp(fraction, 0.0, 1.0);
+  printed_tenths_ = static_cast<int>(10 * first_fraction_ + 1e-9);
+  start_ = Clock::now();
+}
+
 void Progress::update(double fraction) {
   fraction = std::clamp(fraction, 0.0, 1.0);
   const double elapsed = seconds_since(start_);
   const std::string left =
-      fraction > 0 && fraction < 1
-          ? fmt::format(", {} left", format_duration(elapsed * (1 - fraction) / fraction))
+      fraction > first_fraction_ && fraction < 1
+          ? fmt::format(", {} left", format_duration(elapsed * (1 - fraction) / (fraction - first_fraction_)))
           : "";
   const std::string text = fmt::format("{}: {:.0f} %{}", title_, std::floor(100 * fraction), left);
   if (is_terminal_) {
     if (!line_is_open_ || seconds_since(last_print_) > 0.2 || fraction >= 1) {
       print(text);
     }
-  } else if (const int tenths = static_cast<int>(10 * fraction + 1e-9); tenths > printed_tenths_) {
+  } else if (const int tenths = static_cast<int>(10 * fraction + 1e-9);
+             tenths > printed_tenths_ || seconds_since(last_print_) > longest_silence) {
     printed_tenths_ = tenths;
     print(text);
   }

@@ -10,7 +10,7 @@ namespace easydyn::results {
 std::string format_duration(double seconds);
 
 /// Says how far a long computation is and how long it will still take: on a terminal one line that renews
-/// itself a few times per second, elsewhere (a file, a pipe) one line for every tenth.
+/// itself a few times per second, elsewhere (a file, a pipe) one line for every tenth, and at least one every ten minutes.
 ///
 ///   Progress progress("waves");
 ///   solver.run([&](double fraction) { progress.update(fraction); });
@@ -25,6 +25,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  /// The computation goes on from this fraction: only what comes after it tells how long the rest will take.
+  void start_at(double fraction);
   void update(double fraction);  ///< 0 ... 1
   void finish();                 ///< prints the time that was needed
 
@@ -38,6 +40,7 @@ class Progress {
   bool is_terminal_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_print_ = start_;
+  double first_fraction_ = 0;
   int printed_tenths_ = 0;
   bool line_is_open_ = false;
 };

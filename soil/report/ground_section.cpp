@@ -18,14 +18,29 @@ using Eigen::VectorXd;
 using results::ResultReader;
 
 constexpr Index most_curves = 6;
+constexpr Index most_rows = 24;  // of receivers, before lines and grids are told by curves
 
 struct Receivers {
   MatrixXd position;  ///< n x 3 [m]
-  std::vector<std::string> names;
+  std::vector<std::string> names, groups;
   VectorXd distance;        ///< from the axis of the track [m]
-  std::vector<Index> near;  ///< indices, nearest first
+  std::vector<Index> near;  ///< indices, nearest first; of many, those that belong to no line or grid and the
+                            ///< first and the last one of each line or grid
 
   Index count() const { return position.rows(); }
+  /// Of one line or grid, in their order.
+  std::vector<Index> members(const std::string& group) const {
+    std::vector<Index> indices;
+    for (Index i = 0; i < count(); ++i)
+      if (groups[size_t(i)] == group) indices.push_back(i);
+    return indices;
+  }
+  std::vector<std::string> group_names() const {
+    std::vector<std::string> all;
+    for (const std::string& group : groups)
+      if (!group.empty() && (all.empty() || all.back() != group)) all.push_back(group);
+    return all;
+  }
   std::string label(Index i) const { return name_of(names, i, "receiver"); }
 };
 
@@ -34,8 +49,19 @@ Receivers read_receivers(const ResultReader& ground) {
   r.position = ground.read_matrix("/receivers/position");
   r.names = ground.read_names("/receivers/names");
   r.distance = r.position.col(1).cwiseAbs();
-  r.near.resize(size_t(r.count()));
-  std::iota(r.near.begin(), r.near.end(), Index(0));
+  if (ground.has("/receivers/groups")) r.groups = ground.read_names("/receivers/groups");
+  r.groups.resize(size_t(r.count()));
+  if (r.count() <= most_rows) {
+    r.near.resize(size_t(r.count()));
+    std::iota(r.near.begin(), r.near.end(), Index(0));
+  } else {
+    r.near = r.members("");
+    for (const std::string& group : r.group_names()) {
+      const std::vector<Index> members = r.members(group);
+      r.near.push_back(members.front());
+      if (members.size() > 1) r.near.push_back(members.back());
+    }
+  }
   std::stable_sort(r.near.begin(), r.near.end(),
                    [&](Index a, Index b) { return r.distance(a) < r.distance(b); });
   return r;
@@ -43,7 +69,8 @@ Receivers read_receivers(const ResultReader& ground) {
 
 std::vector<Index> chosen(const Receivers& receivers) {
   std::vector<Index> out;
-  for (const Index i : spread(receivers.count(), most_curves)) out.push_back(receivers.near[size_t(i)]);
+  for (const Index i : spread(Index(receivers.near.size()), most_curves))
+    out.push_back(receivers.near[size_t(i)]);
   return out;
 }
 
@@ -114,9 +141,9 @@ void add_spectra(visu::Report& report, const ResultReader& ground, const Receive
 
 /// Peak particle velocity against distance, with the 10 dB within which a prediction can be believed.
 void add_decay(visu::Report& report, const Receivers& receivers, const MatrixXd& ppv) {
-  std::vector<Index> far;  // receivers on the axis have no place on a logarithmic distance
+  std::vector<Index> far;  // on the surface; on the axis there is no logarithm of the distance
   for (const Index i : receivers.near)
-    if (receivers.distance(i) > 0 && ppv(i, 3) > 0) far.push_back(i);
+    if (receivers.distance(i) > 0 && receivers.position(i, 2) == 0 && ppv(i, 3) > 0) far.push_back(i);
   if (far.size() < 2) return;
   const MatrixXd values = 1e3 * ppv(far, Eigen::all);
   const VectorXd distance = receivers.distance(far);
@@ -137,6 +164,59 @@ void add_decay(visu::Report& report, const Receivers& receivers, const MatrixXd&
       "the "
       "accuracy that may be claimed for absolute levels.";
   report.add_subsection("Decay with distance").add_chart(std::move(chart));
+}
+
+/// Distance of each from the first [m] if they lie on a straight line, in order; else nothing.
+VectorXd distances_along(const MatrixXd& position, const std::vector<Index>& members) {
+  const Eigen::RowVector3d first = position.row(members.front()), span = position.row(members.back()) - first;
+  VectorXd along(Index(members.size()));
+  for (Index i = 0; i < along.size(); ++i) {
+    const Eigen::RowVector3d from_first = position.row(members[size_t(i)]) - first;
+    along(i) = from_first.dot(span) / span.norm();
+    const double aside = (from_first - along(i) / span.norm() * span).norm();
+    if (!(aside <= 1e-6 * span.norm()) || (i > 0 && !(along(i) > along(i - 1)))) return {};
+  }
+  return along;
+}
+
+/// The indicators along each line of receivers, as curves.
+void add_lines(visu::Report& report, const ResultReader& ground, const Receivers& receivers,
+               const MatrixXd& ppv) {
+  const VectorXd kb = ground.read_vector("/indicators/kb_f_max");
+  std::vector<visu::Chart> charts;
+  std::string grids;
+  for (const std::string& group : receivers.group_names()) {
+    const std::vector<Index> members = receivers.members(group);
+    if (members.size() < 3) continue;
+    const VectorXd along = distances_along(receivers.position, members);
+    if (along.size() == 0) {
+      grids += fmt::format("{}\"{}\" ({} receivers)", grids.empty() ? "" : ", ", group, members.size());
+      continue;
+    }
+    const auto end = [&](Index i) {
+      return fmt::format("({}, {}, {})", visu::short_number_text(receivers.position(i, 0)),
+                         visu::short_number_text(receivers.position(i, 1)),
+                         visu::short_number_text(receivers.position(i, 2)));
+    };
+    const MatrixXd values = 1e3 * ppv(members, Eigen::all);
+    visu::Chart chart{.title = fmt::format("Indicators along {}", group),
+                      .x = {"distance along the line", "m"},
+                      .y = {"PPV in mm/s, KB_Fmax", "1", visu::Scale::logarithmic},
+                      .series = {},
+                      .height = 300};
+    const std::vector<const char*> names = {"PPV x", "PPV y", "PPV z", "PPV resultant"};
+    for (const int c : {3, 2, 0, 1})
+      if ((values.col(c).array() > 0).any()) chart.series.push_back({names[size_t(c)], along, values.col(c)});
+    const VectorXd kb_along = kb(members);
+    if ((kb_along.array() > 0).any()) chart.series.push_back({"KB_Fmax", along, kb_along});
+    chart.caption = fmt::format("{} receivers from {} m to {} m.", members.size(), end(members.front()),
+                                end(members.back()));
+    charts.push_back(std::move(chart));
+  }
+  if (charts.empty() && grids.empty()) return;
+  report.add_subsection("Lines and grids of receivers");
+  if (!charts.empty()) report.add_charts(std::move(charts));
+  if (!grids.empty()) report.add_paragraph("Not drawn, but in `vibrations.h5`: " + grids + ".");
 }
 
 void add_indicators(visu::Report& report, const ResultReader& ground, const Receivers& receivers,
@@ -164,6 +244,10 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
                           most > 0 ? number_text(centre(strongest)) : dash});
   }
   report.add_table(std::move(table));
+  if (Index(receivers.near.size()) < receivers.count())
+    report.add_paragraph(fmt::format(
+        "Of lines and grids the table has the first and the last receiver only: {} of {} receivers.",
+        receivers.near.size(), receivers.count()));
   report.add_paragraph(fmt::format(
       "{} An instrument of a wider band may show more or, for a peak, less. PPV: largest "
       "magnitude of each velocity component and of the vector. KB_Fmax: DIN 45669-1, of the vertical "
@@ -195,6 +279,7 @@ void add_ground_section(visu::Report& report, const ResultReader& ground) {
   add_velocities(report, ground, receivers);
   add_spectra(report, ground, receivers);
   add_decay(report, receivers, ppv);
+  add_lines(report, ground, receivers, ppv);
   add_indicators(report, ground, receivers, ppv);
   add_dispersion(report, ground);
 }

@@ -2,7 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <cstdio>
 #include <string>
+#include <thread>
 
 namespace easydyn::results {
 namespace {
@@ -55,6 +58,35 @@ TEST(Progress, RenewsOneLineOnATerminal) {
     progress.finish();
   });
   EXPECT_EQ(text, "\rwaves: 42 %, 0.0 s left\033[K\rwaves: 100 %\033[K\rwaves: done in 0.0 s\033[K\n");
+}
+
+TEST(Progress, CountsOnlyWhatIsDoneSinceARestart) {
+  const std::string text = output_of(false, [](Progress& progress) {
+    progress.start_at(0.55);
+    progress.update(0.55);  // nothing known yet, nothing new
+    progress.update(0.65);
+    progress.update(1);
+  });
+  EXPECT_EQ(text, "waves: 65 %, 0.0 s left\nwaves: 100 %\n");
+  EXPECT_EQ(output_of(true,
+                      [](Progress& progress) {
+                        progress.start_at(0.5);
+                        progress.update(0.5);
+                      }),
+            "\rwaves: 50 %\033[K\n");
+}
+
+TEST(Progress, TakesTheRestToLastInProportionToWhatIsDone) {
+  // A fifth of the run in 0.4 s, then the other two fifths in 0.8 s; a busy machine makes it longer, not shorter.
+  const std::string text = output_of(true, [](Progress& progress) {
+    progress.start_at(0.4);
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    progress.update(0.6);
+  });
+  double left = 0;
+  ASSERT_EQ(std::sscanf(text.c_str(), "\rwaves: 60 %%, %lf s left", &left), 1) << text;
+  EXPECT_GE(left, 0.8);
+  EXPECT_LT(left, 8);
 }
 
 TEST(Progress, EndsItsLineWhenTheComputationFails) {

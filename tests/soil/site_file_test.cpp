@@ -185,6 +185,123 @@ TEST(SiteFileFault, IsABlockThatCannotBe) {
   EXPECT_THAT(fault("open = true", "opened = true"), HasSubstr("did you mean \"open\"?"));
 }
 
+std::string with(const std::string& more) {
+  return correct + more;
+}
+
+TEST(SiteFile, SpreadsReceiversOverALine) {
+  Site site = read(with("[[receiver_line]]\nname = \"A\"\nfrom = [0, 5]\nto = [0, 11]\nspacing = 2\n"));
+  ASSERT_EQ(site.receivers.size(), 6u);
+  EXPECT_EQ(site.receivers[1].group, "");
+  const char* const names[] = {"A (0, 5, 0)", "A (0, 7, 0)", "A (0, 9, 0)", "A (0, 11, 0)"};
+  for (int i = 0; i < 4; ++i) {
+    const Receiver& receiver = site.receivers[static_cast<std::size_t>(2 + i)];
+    EXPECT_EQ(receiver.name, names[i]);
+    EXPECT_EQ(receiver.group, "A");
+    EXPECT_THAT(receiver.position, ElementsAre(0, 5 + 2 * i, 0));
+  }
+  // Down a borehole, by number; 0.1 does not become 0.30000000000000004.
+  site = read(with("[[receiver_line]]\nfrom = [1, 2, 0]\nto = [1, 2, -0.4]\ncount = 5\n"));
+  ASSERT_EQ(site.receivers.size(), 7u);
+  EXPECT_EQ(site.receivers[2].name, "receiver_line 1 (1, 2, 0)");
+  EXPECT_EQ(site.receivers[5].name, "receiver_line 1 (1, 2, -0.3)");
+  EXPECT_EQ(site.receivers[6].position[2], -0.4);
+}
+
+TEST(SiteFile, SpreadsReceiversOverAGrid) {
+  Site site = read(
+      with("[[receiver_grid]]\nname = \"G\"\nfrom = [-1, 5, -2]\nto = [1, 8, 0]\nspacing = [1, 3, 2]\n"));
+  ASSERT_EQ(site.receivers.size(), 2u + 3 * 2 * 2);
+  EXPECT_EQ(site.receivers[2].name, "G (-1, 5, -2)");
+  EXPECT_EQ(site.receivers[3].name, "G (0, 5, -2)");
+  EXPECT_EQ(site.receivers[5].name, "G (-1, 8, -2)");
+  EXPECT_EQ(site.receivers[13].name, "G (1, 8, 0)");
+  EXPECT_EQ(site.receivers[13].group, "G");
+  site = read(with("[[receiver_grid]]\nfrom = [0, 5]\nto = [0, 8]\ncount = [1, 4]\n"));
+  EXPECT_EQ(site.receivers.size(), 6u);
+  EXPECT_EQ(site.receivers[3].name, "receiver_grid 1 (0, 6, 0)");
+}
+
+TEST(SiteFile, NeedsNoSingleReceiver) {
+  std::string text = correct;
+  const std::size_t from = text.find("[[receiver]]"), to = text.find("[solver]");
+  text.erase(from, to - from);
+  EXPECT_EQ(read(text + "[[receiver_line]]\nfrom = [0, 5]\nto = [0, 8]\ncount = 2\n").receivers.size(), 2u);
+  EXPECT_THAT(fault_of(text), HasSubstr("no receiver"));
+}
+
+TEST(SiteFile, BringsSnapshots) {
+  const Site site =
+      read(with("[[snapshot]]\nz = 0\nstep = 0.01\n[[snapshot]]\nx = -1.5\nstep = 0.02\nbegin = 0.1\nend "
+                "= 0.5\n[[snapshot]]\nname = \"cut\"\ny = 3\nstep = 1\n"));
+  ASSERT_EQ(site.snapshots.size(), 3u);
+  EXPECT_EQ(site.snapshots[0].name, "surface");
+  EXPECT_EQ(site.snapshots[0].axis, 2);
+  EXPECT_EQ(site.snapshots[0].step, 0.01);
+  EXPECT_TRUE(std::isinf(site.snapshots[0].begin) && std::isinf(site.snapshots[0].end));
+  EXPECT_EQ(site.snapshots[1].name, "x=-1.5");
+  EXPECT_EQ(site.snapshots[1].axis, 0);
+  EXPECT_EQ(site.snapshots[1].place, -1.5);
+  EXPECT_EQ(site.snapshots[1].begin, 0.1);
+  EXPECT_EQ(site.snapshots[1].end, 0.5);
+  EXPECT_EQ(site.snapshots[2].name, "cut");
+  EXPECT_EQ(site.snapshots[2].axis, 1);
+}
+
+TEST(SiteFileFault, IsALineOfReceiversThatCannotBe) {
+  const auto line = [](const std::string& rest) { return fault_of(with("[[receiver_line]]\n" + rest)); };
+  EXPECT_EQ(line("name = \"A\"\nfrom = [0, 5]\nto = [0, 11]\nspacing = 4\n"),
+            "site.toml:37:11: receiver_line \"A\": spacing = 4 m does not divide the 6 m, must be e.g. 3");
+  EXPECT_EQ(line("from = [0, 5]\nto = [0, 11]\nspacing = -1\n"),
+            "site.toml:36:11: receiver_line 1: spacing = -1 m, must be > 0");
+  EXPECT_THAT(line("from = [0, 5]\nto = [0, 11]\nspacing = 1e-6\n"),
+              HasSubstr("spacing = 1e-06 m gives 6e+06 receivers over 6 m, must be at most 100000"));
+  EXPECT_EQ(line("from = [0, 5]\nto = [0, 11]\ncount = 1\n"),
+            "site.toml:36:9: receiver_line 1: count = 1, must be a whole number, >= 2 and <= 100000");
+  EXPECT_THAT(line("from = [0, 5]\nto = [0, 11]\ncount = 2.5\n"), HasSubstr("count = 2.5, must be a whole"));
+  EXPECT_THAT(line("from = [0, 5]\nto = [0, 11]\n"), EndsWith("give count or spacing"));
+  EXPECT_THAT(line("from = [0, 5]\nto = [0, 11]\ncount = 3\nspacing = 3\n"),
+              EndsWith("both count and spacing are given, must be one of them"));
+  EXPECT_THAT(line("from = [0, 5]\nto = [0, 5]\ncount = 3\n"), EndsWith("must have a length"));
+  EXPECT_THAT(line("from = [0, 5, 1]\nto = [0, 5]\ncount = 3\n"),
+              HasSubstr("34:8: receiver_line 1: z = 1 m, must be <= 0"));
+  EXPECT_THAT(line("from = [0]\nto = [0, 5]\ncount = 3\n"), HasSubstr("from has 1 numbers, must have 2"));
+  EXPECT_THAT(line("from = [0, 5]\nuntil = [0, 5]\ncount = 3\n"), HasSubstr("unknown key \"until\""));
+  EXPECT_THAT(line("name = \"A\"\nfrom = [0, 5]\nto = [0, 7]\ncount = 2\n[[receiver_line]]\nname = \"A\"\n"
+                   "from = [0, 7]\nto = [0, 9]\ncount = 2\n"),
+              HasSubstr("39:8: receiver_line \"A\": a receiver \"A (0, 7, 0)\" is there already"));
+}
+
+TEST(SiteFileFault, IsAGridOfReceiversThatCannotBe) {
+  const auto grid = [](const std::string& rest) { return fault_of(with("[[receiver_grid]]\n" + rest)); };
+  EXPECT_EQ(grid("from = [0, 5]\nto = [4, 11]\nspacing = [3, 3]\n"),
+            "site.toml:36:11: receiver_grid 1: spacing[0] = 3 m does not divide the 4 m, must be e.g. 4");
+  EXPECT_THAT(grid("from = [0, 5]\nto = [4, 11]\nspacing = [2, 0]\n"),
+              EndsWith("spacing[1] = 0 m, must be > 0"));
+  EXPECT_THAT(grid("from = [0, 5]\nto = [4, 11]\ncount = [2]\n"),
+              EndsWith("count has 1 numbers, must have 2: one for each of from"));
+  EXPECT_THAT(grid("from = [0, 5]\nto = [0, 11]\ncount = [2, 2]\n"),
+              EndsWith("count[0] = 2 where from and to are the same, must be 1"));
+  EXPECT_THAT(grid("from = [0, 5]\nto = [4, 11]\ncount = [1000, 1000]\n"),
+              EndsWith("count gives 1000000 receivers, must be at most 100000"));
+  EXPECT_THAT(grid("from = [0, 5]\nto = [4, 11, -1]\ncount = [2, 2]\n"),
+              HasSubstr("as many numbers as from"));
+}
+
+TEST(SiteFileFault, IsASnapshotThatCannotBe) {
+  const auto snapshot = [](const std::string& rest) { return fault_of(with("[[snapshot]]\n" + rest)); };
+  EXPECT_EQ(snapshot("step = 0.1\n"),
+            "site.toml:33:1: snapshot 1: no plane: give x, y or z (z = 0 is the surface)");
+  EXPECT_THAT(snapshot("x = 1\ny = 1\nstep = 0.1\n"), EndsWith("must be one of them"));
+  EXPECT_EQ(snapshot("z = 1\nstep = 0.1\n"), "site.toml:34:5: snapshot 1: z = 1 m, must be <= 0");
+  EXPECT_EQ(snapshot("z = 0\nstep = 0\n"), "site.toml:35:8: snapshot \"surface\": step = 0 s, must be > 0");
+  EXPECT_THAT(snapshot("z = 0\n"), EndsWith("snapshot \"surface\": \"step\" is missing"));
+  EXPECT_THAT(snapshot("z = 0\nstep = 1\nbegin = 2\nend = 1\n"),
+              EndsWith("end = 1 s, must be > begin = 2 s"));
+  EXPECT_THAT(snapshot("name = \"../a\"\nz = 0\nstep = 1\n"), HasSubstr("34:8: snapshot 1: name = \"../a\""));
+  EXPECT_THAT(snapshot("z = 0\nstep = 1\n[[snapshot]]\nz = 0\nstep = 1\n"), HasSubstr("name appears twice"));
+}
+
 TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
   EXPECT_EQ(fault_of("cs = 150", "cs = -150"), "site.toml:9:6: layer \"loam\": cs = -150 m/s, must be > 0");
   EXPECT_EQ(fault_of("density = 2000", "density = -2e3"),

@@ -173,6 +173,51 @@ TEST_F(SoilProgram, VerifiesFiniteElementsByTheLayeredHalfSpace) {
               HasSubstr("Check: finite elements against the semi-analytical solution"));
 }
 
+TEST_F(SoilProgram, DrawsALineOfReceiversAsACurve) {
+  const Outcome outcome =
+      run(tiny_site +
+          "[[receiver_line]]\nname = \"row\"\nfrom = [0, 3]\nto = [0, 20]\ncount = 35\n"
+          "[[receiver_grid]]\nname = \"field\"\nfrom = [0, 3]\nto = [2, 5]\ncount = [2, 2]\n");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("41 receivers"), HasSubstr("row (0, 3, 0)"), HasSubstr("row (0, 20, 0)"),
+                    HasSubstr("the others are in vibrations.h5"), Not(HasSubstr("row (0, 10, 0)"))));
+  const Vibrations v = read_vibrations(folder_ / "out/vibrations.h5");
+  ASSERT_EQ(v.receivers.size(), 41u);
+  EXPECT_EQ(v.receivers[0].group, "");
+  EXPECT_EQ(v.receivers[2].group, "row");
+  EXPECT_EQ(v.receivers[40].group, "field");
+  EXPECT_EQ(v.receivers[36].name, "row (0, 20, 0)");
+  // The end of the line and the receiver "20 m" are one point.
+  EXPECT_EQ(v.vz.col(36), v.vz.col(1));
+
+  EXPECT_EQ(call("report " + (folder_ / "out").string()).status, 0);
+  const std::string page = testing::read_whole_file(folder_ / "out/report.html");
+  for (const char* part : {"Indicators along row", "35 receivers from (0, 3, 0) m to (0, 20, 0) m", "field",
+                           "6 of 41 receivers", "10 m"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("row (0, 10, 0)")));
+}
+
+TEST_F(SoilProgram, WritesSnapshotsAndAnnouncesThem) {
+  const std::string site = tiny_site + "[[snapshot]]\nz = 0\nstep = 0.1\n[[snapshot]]\nx = 1\nstep = 0.1\n";
+  const Outcome announced = run(site, "--dry-run");
+  EXPECT_THAT(announced.out,
+              AllOf(HasSubstr("snapshots "), HasSubstr("out/snapshots"), HasSubstr("\"surface\": ")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  ASSERT_EQ(run(site).status, 0);
+  for (const char* file : {"surface.pvd", "surface/00000.vtu", "x=1.pvd", "x=1/00000.vtu"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out/snapshots" / file)) << file;
+  }
+  // The next run without snapshots leaves none that look like its own.
+  ASSERT_EQ(run(tiny_site).status, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/snapshots"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/snapshots.previous/surface.pvd"));
+  expect_refused(run(tiny_site + "[[snapshot]]\nx = 500\nstep = 0.1\n"),
+                 "snapshot \"x=500\": x = 500 m, must be in");
+}
+
 TEST_F(SoilProgram, StopsBeforeTheRunWhenAsked) {
   const Outcome outcome = run(tiny_site, "--dry-run");
   EXPECT_EQ(outcome.status, 0) << outcome.err;

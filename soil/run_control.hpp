@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "easydyn/error.hpp"
+
+namespace easydyn::soil {
+
+/// What accompanies a run of the wave solver; by default nothing.
+struct RunControl {
+  std::function<void(double fraction)> progress;  ///< gets the fraction done, 0..1, a few times per second;
+                                                  ///< first of all the one that the run starts from
+  std::function<bool()> is_stop_wanted;           ///< asked after every step
+  std::filesystem::path checkpoint;               ///< the file; empty: none
+  double checkpoint_interval = 600;               ///< [s] of real time; 0: only when the run is stopped
+  bool restart = false;                           ///< go on from the checkpoint
+  std::filesystem::path snapshots;                ///< folder of Site::snapshots; empty: none are taken
+  /// Gets one sentence on what went wrong without harm to the run: a checkpoint that could not be written.
+  std::function<void(const std::string& sentence)> warn;
+};
+
+/// A run ended because it was asked to; what() says where and how to go on.
+class RunStopped : public Error {
+ public:
+  RunStopped(const std::string& what, long steps_done, long steps)
+      : Error(what), steps_done_(steps_done), steps_(steps) {}
+  long steps_done() const { return steps_done_; }
+  long steps() const { return steps_; }
+
+ private:
+  long steps_done_, steps_;
+};
+
+}  // namespace easydyn::soil
