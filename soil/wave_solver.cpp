@@ -25,11 +25,6 @@ namespace easydyn::soil {
 
 namespace {
 
-// Two mechanisms over a decade below the highest frequency: 3 % becomes 2.96 to 3.15 %. A wider band takes three.
-int count_mechanisms(double lowest, double highest) {
-  return highest <= 10.001 * lowest ? 2 : 3;
-}
-
 void check_options(const SolverOptions& options) {
   const auto require = [](bool condition, const std::string& message) {
     if (!condition) throw ModelError("solver: " + message);
@@ -59,9 +54,7 @@ struct Rheology {
 Relaxation fit_constant_ratio(const Site& site, const Layer& layer) {
   const double low = site.highest_frequency / 10, high = site.highest_frequency,
                reference = site.damping_frequency;
-  const double lowest = std::min(low, reference), highest = std::max(high, reference);
-  const Relaxation body =
-      fit_relaxation(layer.damping, lowest, highest, reference, count_mechanisms(lowest, highest));
+  const Relaxation body = fit_relaxation_of_band(layer.damping, high, reference);
   bool is_sound = body.weights.allFinite() && body.weights.sum() < 1;
   for (double f = low; f <= 1.001 * high; f *= 1.2)
     is_sound = is_sound && std::abs(body.compute_damping_ratio(f) - layer.damping) <= 0.25 * layer.damping;

@@ -1,9 +1,12 @@
 #include "soil/layered/layered_prediction.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "easydyn/error.hpp"
 #include "soil/layered/superposition.hpp"
 #include "soil/prediction.hpp"
 #include "soil/recoupling.hpp"
@@ -22,6 +25,12 @@ double compute_ratio(double difference, double reference, double whole) {
 
 StoredMobility compute_mobility(const Site& site, const std::vector<Footprint>& footprints,
                                 GroundDamping damping, double window, int threads) {
+  if (!site.blocks.empty()) {
+    throw ModelError(fmt::format(
+        "layered half-space: the site has the block \"{}\", must have none: the ground must be the "
+        "same along x and y (soil run computes blocks)",
+        site.blocks.front().name));
+  }
   StoredMobility stored;
   stored.site = site;
   stored.damping = damping;

@@ -71,6 +71,10 @@ Mobility list_distances(const std::vector<Footprint>& footprints, const std::vec
           fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m like the first", j + 1,
                       f.length, f.width, first.length, first.width));
     }
+    if (f.direction != LoadDirection::down) {
+      throw ModelError(
+          fmt::format("superposition: footprint {} is loaded horizontally, must be vertically", j + 1));
+    }
     for (const Receiver& r : receivers) {
       places.insert(
           {round_distance(r.position[0] - f.x), round_distance(r.position[1] - f.y), r.position[2]});

@@ -120,6 +120,10 @@ class Superposition {
                         "responses",
                         j + 1, f.length, f.width, mobility.length, mobility.width));
       }
+      if (f.direction != LoadDirection::down) {
+        throw ModelError(
+            fmt::format("superposition: footprint {} is loaded horizontally, must be vertically", j + 1));
+      }
     }
     SurfaceLoads limited = loads;
     const double step =

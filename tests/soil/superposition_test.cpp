@@ -10,6 +10,7 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/footprint_response.hpp"
+#include "soil/layered/layered_prediction.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -192,6 +193,19 @@ TEST(Superposition, RefusesWhatDoesNotFit) {
   EXPECT_THROW(superpose(mobility, site, loads), ModelError);
   loads.footprints[2].width = 2;
   EXPECT_THROW(list_distances(loads.footprints, site.receivers), ModelError);
+
+  site = make_site();
+  loads = make_loads();
+  loads.footprints[1].direction = LoadDirection::y;
+  const std::string horizontal = "footprint 2 is loaded horizontally, must be vertically";
+  EXPECT_THAT([&] { list_distances(loads.footprints, site.receivers); },
+              ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(horizontal)));
+  EXPECT_THAT([&] { superpose(mobility, site, loads); },
+              ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(horizontal)));
+  site.blocks.push_back({.name = "trench", .open = true, .material = {}});
+  EXPECT_THAT(
+      [&] { compute_mobility(site, make_loads().footprints, GroundDamping::maxwell_body, 1.0, 1); },
+      ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr("the block \"trench\", must have none")));
 }
 
 }  // namespace
