@@ -200,6 +200,7 @@ expect "the release suite is last" has "$(tail -n 1 <<<"$log")" "build/test"
 touch "$scratch/fail_sanitize"
 run test
 expect "a failure under the sanitizers counts" is "$code" 8
-expect "the release suite runs all the same" has "$(tail -n 1 <<<"$log")" "build/test"
+expect "the release suite runs all the same" has "$(tail -n 2 <<<"$log")" "build/test"
+expect "what failed runs again at the end of the log" has "$(tail -n 1 <<<"$log")" "build/sanitize --rerun-failed"
 
 finish
