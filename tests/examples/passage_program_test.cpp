@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <fstream>
-#include <sstream>
 
 #include "soil/surface_loads.hpp"
 #include "tests/temporary_folder.hpp"
@@ -24,15 +23,19 @@ struct Outcome {
   std::string text;  // both streams
 };
 
-/// The tram, quick: fast, with the longest step that its output allows.
-Outcome run_tram(const std::string& options) {
-  const std::string command = std::string(TRAM_PROGRAM) + " --time-step 5e-4 " + options + " 2>&1";
+/// Quick: with the longest step that the output allows.
+Outcome run_program(const std::string& program, const std::string& options) {
+  const std::string command = program + " --time-step 5e-4 " + options + " 2>&1";
   Outcome outcome;
   FILE* const pipe = popen(command.c_str(), "r");
   char buffer[4096];
   for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) outcome.text.append(buffer, n);
   outcome.status = WEXITSTATUS(pclose(pipe));
   return outcome;
+}
+
+Outcome run_tram(const std::string& options) {
+  return run_program(TRAM_PROGRAM, options);
 }
 
 /// A figure of the summary that the program prints.
@@ -91,6 +94,37 @@ TEST(PassageProgram, TakesSimplerTrainsAndFoundations) {
   EXPECT_GT(loads.footprints.size(), 36u);
   EXPECT_TRUE(fs::exists(folder.path() / "results.h5"));
   EXPECT_TRUE(fs::exists(folder.path() / "channels.csv"));
+}
+
+TEST(PassageProgram, TakesMovingLoadsAndALongerLoadedGround) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run_tram("--speed 100 --detail moving-loads --loaded 20 --output " + folder.path().string());
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  // Constant forces: the step of the rail and the sleepers do not matter to them.
+  EXPECT_NEAR(figure(outcome.text, "largest dynamic load factor of a wheel pair"), 1, 1e-12);
+  EXPECT_NEAR(figure(outcome.text, "vehicle weight"), 358.1, 0.1);  // 36.5 t
+  const soil::SurfaceLoads loads = soil::read_surface_loads(folder.path() / "surface_loads.h5");
+  double farthest = 0;
+  for (const soil::Footprint& footprint : loads.footprints)
+    farthest = std::max(farthest, std::abs(footprint.x));
+  EXPECT_GT(farthest, 19);
+  EXPECT_LE(farthest, 20);
+}
+
+TEST(PassageProgram, WarnsOfATrainFasterThanTheWavesOfTheGround) {
+  const TemporaryFolder folder;
+  const std::string options =
+      "--detail moving-loads --irregularity none --loaded 5 --output " + folder.path().string();
+  const auto run_hst = [&](const std::string& speed) {
+    const Outcome outcome = run_program(HST_PROGRAM, "--speed " + speed + " " + options);
+    EXPECT_EQ(outcome.status, 0) << outcome.text;
+    return outcome.text;
+  };
+  // c_R = 0.932 x 80 m/s = 74.6 m/s; warned from 0.7 c_R = 52 m/s = 188 km/h on
+  EXPECT_THAT(run_hst("300"), HasSubstr("speed 83.3 m/s is 1.12 of the Rayleigh speed 74.6 m/s"));
+  EXPECT_THAT(run_hst("200"), HasSubstr("its waves gather around the train"));
+  EXPECT_THAT(run_hst("150"), Not(HasSubstr("Rayleigh")));
 }
 
 TEST(PassageProgram, SweepsSpeedsToATableAndChartsWithoutLoads) {
