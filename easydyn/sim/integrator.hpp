@@ -56,6 +56,7 @@ class Integrator {
  private:
   std::vector<double> present_inputs() const {
     std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(system_.input_size()));
     for (int i = 0; i < system_.input_size(); ++i) values.push_back(system_.input_value(i));
     return values;
   }
