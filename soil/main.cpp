@@ -127,7 +127,8 @@ void print_comparison(const Vibrations& vibrations) {
 
 // Of a run, and of its part below a crossover frequency.
 std::vector<fs::path> checkpoints_of(const fs::path& folder) {
-  return {folder / "checkpoint.bin", folder / "checkpoint.low.bin"};
+  const fs::path checkpoint = folder / "checkpoint.bin";
+  return {checkpoint, low_checkpoint_of(checkpoint)};
 }
 
 RunControl make_control(const RunArguments& arguments) {

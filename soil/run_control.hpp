@@ -21,6 +21,15 @@ struct RunControl {
   std::function<void(const std::string& sentence)> warn;
 };
 
+/// Beside the checkpoint of a run with a crossover frequency, that of its part below: checkpoint.bin, checkpoint.low.bin.
+/// Empty without checkpoint.
+inline std::filesystem::path low_checkpoint_of(const std::filesystem::path& checkpoint) {
+  if (checkpoint.empty()) return {};
+  std::filesystem::path low = checkpoint;
+  low.replace_filename(checkpoint.stem().string() + ".low" + checkpoint.extension().string());
+  return low;
+}
+
 /// A run ended because it was asked to; what() says where and how to go on.
 class RunStopped : public Error {
  public:

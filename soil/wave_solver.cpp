@@ -222,6 +222,7 @@ struct WaveSolver::Impl {
   double start = 0;  // time of the first output
   long steps_per_output = 1, outputs = 0, preload_outputs = 0;
   std::unique_ptr<Impl> low;  // what is below the crossover, if there is one
+  bool is_low_part = false;   // of another one
   double seconds_per_step = 0;
   RunIdentity identity;
   std::unique_ptr<SnapshotWriter> snapshots;
@@ -368,6 +369,7 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     low_options.memory_limit = limit - memory;
     low = std::make_unique<Impl>(site, low_loads, low_options, crossover_width * options.crossover_frequency,
                                  start);
+    low->is_low_part = true;
   }
 
   snapshots =
@@ -567,6 +569,7 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
       saved = std::chrono::steady_clock::now();
     }
   }
+  if (is_low_part && !control.checkpoint.empty()) save(control, engine, motion, position);
   return motion;
 }
 
@@ -605,14 +608,6 @@ double WaveSolver::Impl::measure_step() {
   return seconds_per_step;
 }
 
-/// Beside the checkpoint of a run with a crossover frequency, that of its part below; empty without checkpoints.
-std::filesystem::path low_checkpoint_of(const std::filesystem::path& checkpoint) {
-  if (checkpoint.empty()) return {};
-  std::filesystem::path low = checkpoint;
-  low.replace_filename(checkpoint.stem().string() + ".low" + checkpoint.extension().string());
-  return low;
-}
-
 GroundMotion WaveSolver::Impl::run(const RunControl& control) {
   const auto run_one = [](Impl& impl, const RunControl& with) {
     return impl.with_engine([&](auto& engine) { return impl.run(engine, with); });
@@ -621,25 +616,21 @@ GroundMotion WaveSolver::Impl::run(const RunControl& control) {
   const double work = static_cast<double>(lattice.dofs()) * static_cast<double>(steps());
   const double low_work = static_cast<double>(low->lattice.dofs()) * static_cast<double>(low->steps());
   const double low_share = low_work / (work + low_work);
-  // Both parts one after the other; each has a checkpoint of its own, and begins anew where it has none yet.
-  const auto part = [&](double from, double share, const std::filesystem::path& checkpoint) {
+  // Both parts one after the other, each with a checkpoint of its own; that of the part below is kept when it is complete.
+  const auto part = [&](double from, double share) {
     RunControl of_part = control;
-    of_part.checkpoint = checkpoint;
-    of_part.restart = control.restart && std::filesystem::exists(checkpoint);
     if (control.progress)
       of_part.progress = [&control, from, share](double fraction) {
         control.progress(from + share * fraction);
       };
     return of_part;
   };
-  const std::filesystem::path low_checkpoint = low_checkpoint_of(control.checkpoint);
-  if (control.restart && !std::filesystem::exists(control.checkpoint) &&
-      !std::filesystem::exists(low_checkpoint))
-    throw InputError(fmt::format("{}: cannot be read: there is no such file", control.checkpoint.string()));
-  RunControl below_control = part(0, low_share, low_checkpoint);
-  below_control.snapshots.clear();
-  const GroundMotion below = run_one(*low, below_control);
-  GroundMotion motion = run_one(*this, part(low_share, 1 - low_share, control.checkpoint));
+  RunControl low_control = part(0, low_share), high_control = part(low_share, 1 - low_share);
+  low_control.checkpoint = low_checkpoint_of(control.checkpoint);
+  low_control.snapshots.clear();
+  high_control.restart = control.restart && std::filesystem::exists(control.checkpoint);
+  const GroundMotion below = run_one(*low, low_control);
+  GroundMotion motion = run_one(*this, high_control);
   motion.vx += below.vx;
   motion.vy += below.vy;
   motion.vz += below.vz;
@@ -664,6 +655,7 @@ RunSummary WaveSolver::compute_summary() {
   summary.expected_time = impl.measure_step() * static_cast<double>(summary.steps);
   if (impl.low) {
     summary.memory += impl.low->memory;
+    summary.checkpoint += impl.low->compute_checkpoint_size();
     summary.expected_time += impl.low->measure_step() * static_cast<double>(impl.low->steps());
   }
   return summary;

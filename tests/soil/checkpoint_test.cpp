@@ -168,6 +168,36 @@ TEST(Restart, GivesTheSameBitsAsARunThatWasNotStopped) {
       }
 }
 
+TEST(Restart, GoesOnInBothPartsOfARunWithACrossover) {
+  const TemporaryFolder folder;
+  RunControl control;
+  control.checkpoint = folder / "checkpoint.bin";
+  SolverOptions options = test::small_options();
+  options.crossover_frequency = 10;
+  const SurfaceLoads loads = test::small_loads();
+  const GroundMotion whole = WaveSolver(test::small_site(), loads, options).run();
+  ASSERT_GT(whole.vz.cwiseAbs().maxCoeff(), 0);
+  GroundMotion motion;
+  int stops_below = 0, stops_above = 0;
+  control.restart = false;
+  for (bool complete = false; !complete;) {
+    ASSERT_LT(stops_below + stops_above, 1000);
+    WaveSolver solver(test::small_site(), loads, options);
+    complete = run_for(solver, control, std::max(7L, solver.steps() / 4), motion);
+    if (!complete) ++(std::filesystem::exists(control.checkpoint) ? stops_above : stops_below);
+    EXPECT_TRUE(std::filesystem::exists(low_checkpoint_of(control.checkpoint)));
+    control.restart = true;
+  }
+  EXPECT_GE(stops_below, 1);
+  EXPECT_GE(stops_above, 2);
+  expect_same_bits(motion, whole);
+
+  std::filesystem::remove(low_checkpoint_of(control.checkpoint));
+  WaveSolver solver(test::small_site(), loads, options);
+  EXPECT_THAT(message_of<InputError>([&] { solver.run(control); }),
+              AllOf(HasSubstr("checkpoint.low.bin"), HasSubstr("no checkpoint")));
+}
+
 TEST(Restart, CanGoOnInTheSameSolver) {
   const TemporaryFolder folder;
   RunControl control;
