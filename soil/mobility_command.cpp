@@ -26,7 +26,8 @@ the site file unless --output says otherwise. Every train on footprints of the s
 predicted in about a second.)";
 
 struct Arguments {
-  fs::path site, loads, output;
+  fs::path site, output;
+  std::vector<fs::path> loads;
   std::string method = "layered", damping = "constant";
   std::vector<double> footprint;  // length, width
   double spacing = 0.6, window = 0;
@@ -81,7 +82,7 @@ Action add_mobility_command(CLI::App& app) {
   command.footer(footer);
   command.add_option("SITE", arguments->site, "Site file (TOML)")->required()->type_name("");
   command.add_option("--loads", arguments->loads, "Load histories whose footprints are meant (HDF5)")
-      ->type_name("SURFACE_LOADS.h5");
+      ->type_name("SURFACE_LOADS.h5 ...");
   command
       .add_option("--footprint", arguments->footprint, "Without --loads: length along x, width along y [m]")
       ->expected(2)

@@ -22,7 +22,8 @@ GROUND is a file of `soil mobility`, or a site file (.toml): its layered half-sp
 some seconds. The result, vibrations.h5, is that of `soil run`.)";
 
 struct Arguments {
-  fs::path ground, loads, output;
+  fs::path ground, output;
+  std::vector<fs::path> loads;
   int threads = 0;
 };
 
@@ -41,7 +42,7 @@ void run(const Arguments& arguments, const std::string& command_line) {
       return predict_vibrations(obtain_mobility(arguments, loads), loads, arguments.threads);
     } catch (const ModelError& error) {  // ground and loads do not fit: say which files
       throw ModelError(
-          fmt::format("{}, {}: {}", arguments.ground.string(), arguments.loads.string(), error.what()));
+          fmt::format("{}, {}: {}", arguments.ground.string(), join_names(arguments.loads), error.what()));
     }
   }();
   write_vibrations(result, vibrations,
@@ -60,7 +61,11 @@ Action add_predict_command(CLI::App& app) {
   command.add_option("GROUND", arguments->ground, "Impulse responses (HDF5) or site file (TOML)")
       ->required()
       ->type_name("");
-  command.add_option("SURFACE_LOADS", arguments->loads, "Load histories (HDF5)")->required()->type_name("");
+  command
+      .add_option("SURFACE_LOADS", arguments->loads,
+                  "Load histories (HDF5); of several files all act together")
+      ->required()
+      ->type_name("");
   command.add_option("-o,--output", arguments->output, "Folder of vibrations.h5, made if needed")
       ->required()
       ->type_name("DIR");

@@ -41,7 +41,8 @@ std::string checksum_of(const SurfaceLoads& loads) {
   };
   add(loads.time);
   for (const Footprint& f : loads.footprints)
-    for (const double value : {f.x, f.y, f.length, f.width, static_cast<double>(f.direction)})
+    for (const double value :
+         {f.x, f.y, f.length, f.width, static_cast<double>(f.direction), static_cast<double>(f.source)})
       sum.add_value(value);
   add(loads.force);
   return fmt::format("{:016x}", sum.value());
