@@ -115,6 +115,9 @@ int component_of(LoadDirection direction) {
 }
 
 constexpr double crossover_width = 1.4142;  // both parts hold something between crossover / width and x width
+// Frequency up to which the lattice of the low part resolves, over the crossover. At the upper end of its band a sponge sends
+// back more, from elements too coarse; the low part must stay below that (docs/soil_boundary.md).
+constexpr double low_resolution = 1.6;
 
 /// Loads that add up to the given ones: what lies below the crossover, and what lies above it. Both begin earlier,
 /// because a part of a band begins before the whole does.
@@ -367,8 +370,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     low_options.crossover_frequency = 0;
     low_options.output_step = output_step;
     low_options.memory_limit = limit - memory;
-    low = std::make_unique<Impl>(site, low_loads, low_options, crossover_width * options.crossover_frequency,
-                                 start);
+    low = std::make_unique<Impl>(
+        site, low_loads, low_options,
+        std::min(low_resolution * options.crossover_frequency, site.highest_frequency), start);
     low->is_low_part = true;
   }
 
