@@ -63,14 +63,14 @@ Complex compute_strip_compliance(const soil::LayeredGround& ground, double width
   double slow = k;
   for (const soil::LayerAtFrequency& layer : layers)
     slow = std::max(slow, 1.2 * std::sqrt(std::abs(layer.ks2)));
-  const double lobe = 2 * pi / width, last = lobe * (8 + std::ceil(2 * slow / lobe));
+  const double lobe = 2 * pi / width, last = lobe * (4 + std::ceil(2 * slow / lobe));
   // What is left beyond: G = (1 - nu) / (mu k_y) of the uppermost layer, the square of the sine at its mean, 1/2.
   const soil::LayerAtFrequency& upper = layers.front();
   const Complex modulus = upper.mu * 2.0 * (1 - upper.speed_ratio2);  // mu / (1 - nu)
   Complex sum = 1.0 / (modulus * std::pow(width * last, 2));
-  const double tolerance = 1e-6 / std::abs(modulus);
+  const double tolerance = 1e-4 / std::abs(modulus);
   double from = 0;
-  for (double to = std::min(lobe / 4, slow / 2); from < last; from = to, to = std::min(last, to + lobe / 2))
+  for (double to = std::min(lobe / 4, slow / 2); from < last; from = to, to = std::min(last, to + lobe))
     sum += integrate(integrand, from, to, tolerance);
   return sum / pi;
 }
@@ -106,7 +106,7 @@ Eigen::VectorXd compute_moving_load_response(const track::TrackData& data, const
   // Trapezoidal rule in log k, to ten times the wavenumber of the rail on its pads; there D = E I k^4.
   const double first = std::log(1e-4),
                last = std::log(10 * std::pow(data.pad_stiffness / L / rail.bending_stiffness, 0.25));
-  constexpr double step = 0.01;
+  constexpr double step = 0.03;
   Eigen::VectorXd w = Eigen::VectorXd::Zero(s.size());
   for (double log_k = first; log_k < last; log_k += step) {
     const double k = std::exp(log_k);
