@@ -86,17 +86,17 @@ void write_clm(const fs::path& path, const SiteClm& clm) {
 format = {}
 source = {}
 
-[clm]                # per sleeper, both rails
-m_f = {}             # kg
-k_f = {}             # N/m
-d_f = {}             # N s/m
-k_c = {}             # N/m
-d_c = {}             # N s/m
+[clm]  # per sleeper, both rails
+m_f = {}  # kg
+k_f = {}  # N/m
+d_f = {}  # N s/m
+k_c = {}  # N/m
+d_c = {}  # N s/m
 
 [footprint]
-length = {}          # m, along the track
-width = {}           # m
-spacing = {}         # m
+length = {}  # m, along the track
+width = {}  # m
+spacing = {}  # m
 
 [ground]
 damping_frequency = {}  # Hz
@@ -113,18 +113,18 @@ damping_frequency = {}  # Hz
   text += fmt::format(
       R"(
 [fit]
-lowest = {}          # Hz
-highest = {}         # Hz
-foundations = {}     # of the chain; 0: infinitely many
+lowest = {}  # Hz
+highest = {}  # Hz
+foundations = {}  # of the chain; 0: infinitely many
 system = {}
-rms_00 = {}          # error of H_00 over |H_00| at the lowest frequency
+rms_00 = {}  # error of H_00 over |H_00| at the lowest frequency
 rms_01 = {}
 stiffness_margin = {}  # (k_f + 4 k_c) / k_f, passive: >= 0
-damping_margin = {}    # (d_f + 4 d_c) / d_f, passive: >= 0
-bounds = {}          # on which the fit lies
+damping_margin = {}  # (d_f + 4 d_c) / d_f, passive: >= 0
+bounds = {}  # on which the fit lies
 left_out = {}
 
-[compliance]         # m/N, time factor exp(i w t)
+[compliance]  # m/N, time factor exp(i w t)
 frequency = {}
 )",
       clm.lowest, clm.highest, clm.foundations, quote(fit.system), fit.rms_00, fit.rms_01,
