@@ -109,7 +109,8 @@ void print(const track_on_soil::SiteClm& clm) {
 void write_page(const Arguments& arguments, const track_on_soil::SiteClm& clm, const fs::path& path) {
   const track::ClmFit& fit = clm.fit;
   visu::Report report("Foundation of a track on its site", arguments.site.filename().string());
-  report.add_facts({{"Ground", fit.clm.k_f.source},
+  report.add_facts({{"Ground", fit.clm.k_f.source.substr(3)},  // without the mark of its provenance
+
                     {"Footprints", fmt::format("{:g} m x {:g} m every {:g} m", clm.row.length, clm.row.width,
                                                clm.row.spacing)},
                     {"Fit", fmt::format("{}, {:g} to {:g} Hz, {} frequencies, all alike", fit.system,
@@ -120,17 +121,17 @@ void write_page(const Arguments& arguments, const track_on_soil::SiteClm& clm, c
                           {"damping d_f", number_text(1e-3 * fit.clm.d_f, 4), "kN s/m"},
                           {"coupling stiffness k_c", number_text(1e-6 * fit.clm.k_c, 4), "MN/m"},
                           {"coupling damping d_c", number_text(1e-3 * fit.clm.d_c, 4), "kN s/m"}});
-  visu::Table quality{{"what", "value", "must be"},
-                      {{"error of H_00, rms, of |H_00| at the lowest frequency [%]",
-                        number_text(100 * fit.rms_00, 3), "small"},
-                       {"error of H_01, the same [%]", number_text(100 * fit.rms_01, 3), "small"},
-                       {"(k_f + 4 k_c) / k_f", number_text(fit.stiffness_margin, 3), "at least 0"},
-                       {"(d_f + 4 d_c) / d_f", number_text(fit.damping_margin, 3), "at least 0"},
-                       {"m_f [kg]", number_text(fit.clm.m_f, 4), "at least 0"}},
-                      "How well the chain follows the ground, and how far it is from giving energy"};
+  visu::Table quality{
+      {"what", "value", "accepted"},
+      {{"error of H_00, rms, of |H_00| at the lowest frequency [%]", number_text(100 * fit.rms_00, 3), ""},
+       {"error of H_01, the same [%]", number_text(100 * fit.rms_01, 3), ""},
+       {"(k_f + 4 k_c) / k_f", number_text(fit.stiffness_margin, 3), "at least 0"},
+       {"(d_f + 4 d_c) / d_f", number_text(fit.damping_margin, 3), "at least 0"},
+       {"m_f [kg]", number_text(fit.clm.m_f, 4), "at least 0"}},
+      "How well the chain follows the ground, and how far it is from giving energy"};
   if (fit.left_out > 0)
     quality.rows.push_back({"couplings beyond neighbours, of the ground's stiffness [%]",
-                            number_text(100 * fit.left_out, 3), "small"});
+                            number_text(100 * fit.left_out, 3), ""});
   report.add_table(std::move(quality));
   if (!fit.bounds.empty())
     report.add_note(
@@ -149,9 +150,9 @@ void write_page(const Arguments& arguments, const track_on_soil::SiteClm& clm, c
                      "Layers of the site"};
   for (const soil::Layer& layer : clm.layers)
     layers.rows.push_back({layer.name,
-                           &layer == &clm.layers.back() ? "half-space" : number_text(layer.thickness, 4),
+                           &layer == &clm.layers.back() ? "\u2013" : number_text(layer.thickness, 4),
                            number_text(layer.density, 4), number_text(layer.cs, 4), number_text(layer.cp, 4),
-                           number_text(layer.damping, 3)});
+                           visu::short_number_text(layer.damping)});
   report.add_section("Ground").add_table(std::move(layers));
   report.write(path);
 }

@@ -135,6 +135,9 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const Pa
                       {"m/s", "speed of a constant load on the track on its ground", "scalar"});
     file.write_vector("/moving_load/deflection", report.load_deflection,
                       {"m/N", "largest deflection of the rail per unit load", down});
+    if (report.critical_speed > 0)
+      file.write_vector("/moving_load/critical_speed", Eigen::VectorXd::Constant(1, report.critical_speed),
+                        {"m/s", "speed at which that deflection is largest", "scalar"});
   }
   file.write_text("/description", report.description, "what was run, one sentence");
   file.write_text("/parameters", visu::to_json(report.parameters), "JSON: group, name, value, unit, source");

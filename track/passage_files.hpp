@@ -51,6 +51,7 @@ struct PassageReport {
   std::optional<FreeTrackWave> free_wave = {};
   /// Largest deflection of the rail per unit of a constant load on the ground itself [m/N], by the load's speed [m/s].
   Eigen::VectorXd load_speed = {}, load_deflection = {};
+  double critical_speed = 0;  ///< where it is largest [m/s]; 0: not known
 };
 
 /// Writes `results.h5` of a passage: every channel and what the report needs; docs/formats.md.

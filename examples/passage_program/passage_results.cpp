@@ -161,6 +161,7 @@ int run_passage(const PassageProgram& program, const PassageProgramOptions& opti
     if (options.foundation == "clm") report.foundation_fit = site->foundation->clm.fit;
     report.load_speed = site->response.speed;
     report.load_deflection = site->response.deflection;
+    report.critical_speed = run.critical_speed;
   }
   if (options.detail == "full") report.scene = make_scene(program, run);
   track::write_passage(options.output / "results.h5", run.passage, report, provenance);

@@ -24,7 +24,7 @@ Eigen::VectorXd compute_phase(const Eigen::VectorXcd& H) {
 }  // namespace
 
 std::vector<visu::Chart> draw_compliances(const ComplianceFit& fit) {
-  const std::string colours[] = {"#0072b2", "#d55e00"};
+  const std::string colours[] = {"#4477aa", "#ee6677"};
   visu::Chart magnitude{.title = "Compliance of the ground and its foundation",
                         .x = {"frequency", "Hz"},
                         .y = {"|H|", "m/GN", visu::Scale::linear, 0},

@@ -37,15 +37,18 @@ void add_foundation(visu::Report& report, const results::ResultReader& track) {
     const auto number = [&](const char* name) { return quality.at(name).number(); };
     std::vector<std::string> bounds;
     for (const auto& bound : quality.at("bounds").array()) bounds.push_back(bound.string());
-    report.add_paragraph(fmt::format(
-        "{}. What is left is what five constants cannot follow: rms error {} % under the loaded footprint, "
-        "{} % at the next one, both of |H| under the load at the lowest frequency. Margins of passivity: "
-        "(k_f + 4 k_c) / k_f = {}, (d_f + 4 d_c) / d_f = {}; m_f = {} kg, must be at least 0. {}",
-        quality.at("source").string(), number_text(100 * number("rms_00"), 2),
-        number_text(100 * number("rms_01"), 2), number_text(number("stiffness_margin"), 3),
-        number_text(number("damping_margin"), 2), number_text(number("mass"), 3),
-        bounds.empty() ? "The fit lies on no bound."
-                       : fmt::format("The fit lies on {}.", fmt::join(bounds, " and "))));
+    std::string fitted = quality.at("source").string();
+    if (fitted.starts_with("C: ")) fitted.replace(0, 4, "F");  // "C: fit to" without its mark
+    report.add_paragraph(
+        fmt::format("{}. What is left is what five constants cannot follow. Over the band the error (rms) is "
+                    "{} % under the loaded footprint and "
+                    "{} % at the next one, of |H_00| at the lowest frequency. Margins of passivity: "
+                    "(k_f + 4 k_c) / k_f = {}, (d_f + 4 d_c) / d_f = {}; m_f = {} kg, must be at least 0. {}",
+                    fitted, number_text(100 * number("rms_00"), 2), number_text(100 * number("rms_01"), 2),
+                    number_text(number("stiffness_margin"), 3), number_text(number("damping_margin"), 2),
+                    number_text(number("mass"), 3),
+                    bounds.empty() ? "The fit lies on no bound."
+                                   : fmt::format("The fit lies on {}.", fmt::join(bounds, " and "))));
   } catch (const Error& error) {
     throw InputError(fmt::format("{}: {}", source, error.what()));
   }

@@ -21,13 +21,13 @@ using ::testing::ThrowsMessage;
 TEST(SiteClm, OfAHalfSpaceHasTheConstantsOfAnIndependentFit) {
   // Half-space cs 150 m/s, rho 1800 kg/m3, nu 0.35, footprint 0.285 m x 2.5 m every 0.6 m, 2-50 Hz, another code: 64.3 MN/m,
   // 493 kg, 499 kNs/m, 60.5 MN/m, -124.7 kNs/m, errors 4 % and 4 %, on the bound of passivity (tests/track/
-  // clm_of_half_space_test.cpp). There the moduli are the same at all frequencies; here 3 % of loss disperse them by
-  // 4 % between 2 and 20 Hz (constant Q), which the constants of stiffness follow.
+  // clm_of_half_space_test.cpp). There the moduli are the same at all frequencies; here 3 % of loss disperse them (constant
+  // Q): they rise by 6 % from 2 to 50 Hz, about 4 MN/m of k_f, which m_f takes up as 4e6 / (2 pi 40)^2 = 60 kg less.
   soil::Site site = half_space(150, 0.35, 0.015);
   site.damping_frequency = 10;
   const track::ClmFit fit = calibrate_on_site(site, {0.285, 2.5, 0.6}).fit;
   EXPECT_NEAR(fit.clm.k_f, 64.3e6, 0.05 * 64.3e6);
-  EXPECT_NEAR(fit.clm.m_f, 493, 0.1 * 493);
+  EXPECT_NEAR(fit.clm.m_f, 493 - 60, 0.05 * 493);
   EXPECT_NEAR(fit.clm.d_f, 499e3, 0.03 * 499e3);
   EXPECT_NEAR(fit.clm.k_c, 60.5e6, 0.05 * 60.5e6);
   EXPECT_NEAR(fit.clm.d_c, -124.7e3, 0.03 * 124.7e3);
