@@ -89,8 +89,8 @@ void print(const track_on_soil::SiteClm& clm) {
   const track::ClmFit& fit = clm.fit;
   fmt::print("ground      {}\n", fit.clm.k_f.source);
   fmt::print("footprints  {:g} m x {:g} m every {:g} m\n", clm.row.length, clm.row.width, clm.row.spacing);
-  fmt::print("system      {}, {:g} to {:g} Hz, {} frequencies\n", fit.system, clm.lowest, clm.highest,
-             fit.frequency.size());
+  fmt::print("system      {}, {:g} to {:g} Hz, {} frequencies, each octave alike\n", fit.system, clm.lowest,
+             clm.highest, fit.frequency.size());
   fmt::print(
       "  m_f  {:12.5g} kg\n  k_f  {:12.5g} N/m\n  d_f  {:12.5g} N s/m\n  k_c  {:12.5g} N/m\n"
       "  d_c  {:12.5g} N s/m\n",
@@ -113,7 +113,7 @@ void write_page(const Arguments& arguments, const track_on_soil::SiteClm& clm, c
 
                     {"Footprints", fmt::format("{:g} m x {:g} m every {:g} m", clm.row.length, clm.row.width,
                                                clm.row.spacing)},
-                    {"Fit", fmt::format("{}, {:g} to {:g} Hz, {} frequencies, all alike", fit.system,
+                    {"Fit", fmt::format("{}, {:g} to {:g} Hz, {} frequencies, each octave alike", fit.system,
                                         clm.lowest, clm.highest, fit.frequency.size())}});
   report.add_section("Constants, per sleeper");
   report.add_key_figures({{"mass m_f", number_text(fit.clm.m_f, 4), "kg"},

@@ -12,7 +12,9 @@ namespace easydyn::track_on_soil {
 namespace {
 
 SiteClm fit_to(const track::GroundCompliance& compliance, const soil::Site& site, const FootprintRow& row,
-               const track::ClmFitOptions& options) {
+               track::ClmFitOptions options) {
+  if (options.weight.size() == 0)  // each octave alike
+    options.weight = compliance.frequency.cwiseInverse();
   return {site.layers,
           site.damping_frequency,
           row,

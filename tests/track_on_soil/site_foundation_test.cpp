@@ -46,9 +46,11 @@ TEST(SiteFoundation, IsFittedAnewForOtherLayersOrFootprintsOnly) {
   const Place place;
   const double k_f = place.find(two_layers()).clm.fit.clm.k_f;
   // other receivers, other settings of the solver
-  EXPECT_EQ(
-      place.find(two_layers(120, "[[receiver]]\nname = \"16 m\"\ndistance = 16\n[solver]\nhighest_frequency = 90\n")).origin,
-      "taken from site.clm.toml");
+  EXPECT_EQ(place
+                .find(two_layers(
+                    120, "[[receiver]]\nname = \"16 m\"\ndistance = 16\n[solver]\nhighest_frequency = 90\n"))
+                .origin,
+            "taken from site.clm.toml");
   const FoundationOnSite stiffer = place.find(two_layers(150));
   EXPECT_EQ(stiffer.origin,
             "fitted to site.toml, since site.clm.toml belongs to other layers or footprints, and written to "
