@@ -10,7 +10,7 @@
 // travels with the train; a run-in before anything is recorded; several speeds in one call:
 //   ./run hst --speed 150,200,250,300
 // `./run hst` goes on with the ground and the report. How its levels compare with the literature: docs/accuracy.md.
-// Run: ./run hst
+// Run: build/release/bin/hst    (the bundled foundation; ./run hst fits it to the site)
 // Prints: vehicle weight                                             4189 kN
 // Prints: static sum of the ballast reactions / weight                  1
 // Prints: largest contact force                                     191.3 kN

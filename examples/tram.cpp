@@ -11,7 +11,7 @@
 // contact; a smooth start in the quasi-static motion; the ballast reactions handed to the program `soil`.
 // `./run tram` goes on with the ground and the report. What this program shares with others is in
 // examples/passage_program; examples/my_vehicle.cpp has the same in one file.
-// Run: ./run tram
+// Run: build/release/bin/tram    (the bundled foundation; ./run tram fits it to the site)
 // Prints: vehicle weight                                            358.1 kN
 // Prints: static sum of the ballast reactions / weight                  1
 // Prints: largest ballast reaction                                  53.58 kN

@@ -1,6 +1,6 @@
 #pragma once
 
-// Private to soil: the only header that sees toml++.
+// Private to soil and track_on_soil: the only header that sees toml++.
 
 #include <toml++/toml.h>
 

@@ -25,6 +25,33 @@ std::string to_json(const std::vector<SummaryFigure>& summary) {
   return json::Value(std::move(list)).text();
 }
 
+void write_fit(results::ResultFile& file, const ClmFit& fit) {
+  const std::string folder = "/foundation/fit/", phase = "time factor exp(i w t)";
+  file.write_vector(folder + "frequency", fit.frequency, {"Hz", "frequencies of the fit", "scalar"});
+  const auto write = [&](const char* name, const Eigen::VectorXcd& H, const char* meaning) {
+    Eigen::MatrixXd parts(H.size(), 2);
+    parts << H.real(), H.imag();
+    file.write_matrix(folder + name, parts, {"m/N", std::string(meaning) + ": real, imaginary part", phase});
+  };
+  write("ground_00", fit.ground_00, "compliance of the ground under a footprint");
+  write("ground_01", fit.ground_01, "compliance of the ground at the next footprint");
+  write("model_00", fit.model_00, "compliance of the foundation under its force");
+  write("model_01", fit.model_01, "compliance of the foundation at its neighbour");
+  const json::Value::Array bounds(fit.bounds.begin(), fit.bounds.end());
+  file.write_text(folder + "quality",
+                  json::object({{"system", fit.system},
+                                {"source", fit.clm.k_f.source},
+                                {"rms_00", fit.rms_00},
+                                {"rms_01", fit.rms_01},
+                                {"stiffness_margin", fit.stiffness_margin},
+                                {"damping_margin", fit.damping_margin},
+                                {"mass", fit.clm.m_f.value},
+                                {"left_out", fit.left_out},
+                                {"bounds", json::Value(bounds)}})
+                      .text(),
+                  "JSON: how well the foundation follows the ground");
+}
+
 }  // namespace
 
 ProfileSamples sample_profile(const Profile& profile, double wheel_radius, double first_x, double last_x,
@@ -95,6 +122,23 @@ void write_passage(const std::filesystem::path& path, const Passage& p, const Pa
                     {"J", "work of the drive since the start", "scalar"});
 
   file.write_text("/foundation/kind", p.foundation, "what the ballast rests on");
+  if (report.foundation_fit) write_fit(file, *report.foundation_fit);
+  if (report.free_wave) {
+    file.write_vector(
+        "/free_wave/frequency", report.free_wave->frequency,
+        {"Hz", "frequencies of the bending wave of the track without its foundation", "scalar"});
+    file.write_vector("/free_wave/phase_speed", report.free_wave->phase_speed,
+                      {"m/s", "phase speed of that wave", "scalar"});
+  }
+  if (report.load_speed.size() > 0) {
+    file.write_vector("/moving_load/speed", report.load_speed,
+                      {"m/s", "speed of a constant load on the track on its ground", "scalar"});
+    file.write_vector("/moving_load/deflection", report.load_deflection,
+                      {"m/N", "largest deflection of the rail per unit load", down});
+    if (report.critical_speed > 0)
+      file.write_vector("/moving_load/critical_speed", Eigen::VectorXd::Constant(1, report.critical_speed),
+                        {"m/s", "speed at which that deflection is largest", "scalar"});
+  }
   file.write_text("/description", report.description, "what was run, one sentence");
   file.write_text("/parameters", visu::to_json(report.parameters), "JSON: group, name, value, unit, source");
   file.write_text("/summary", to_json(report.summary), "JSON: name, value, unit");

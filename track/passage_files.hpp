@@ -10,6 +10,8 @@
 #include "easydyn/results/provenance.hpp"
 #include "easydyn/visu/report.hpp"
 #include "easydyn/visu/scene.hpp"
+#include "track/clm_calibration.hpp"
+#include "track/free_track_wave.hpp"
 #include "track/passage.hpp"
 #include "track/profile.hpp"
 
@@ -45,6 +47,11 @@ struct PassageReport {
   Eigen::VectorXd static_loads =
       {};  ///< nw, of the contacts, or empty [N]: what dynamic load factors refer to
   std::optional<ProfileSamples> profile = {};  ///< of the rail under the train
+  std::optional<ClmFit> foundation_fit = {};   ///< of the foundation to the ground that it stands for
+  std::optional<FreeTrackWave> free_wave = {};
+  /// Largest deflection of the rail per unit of a constant load on the ground itself [m/N], by the load's speed [m/s].
+  Eigen::VectorXd load_speed = {}, load_deflection = {};
+  double critical_speed = 0;  ///< where it is largest [m/s]; 0: not known
 };
 
 /// Writes `results.h5` of a passage: every channel and what the report needs; docs/formats.md.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <iostream>
+#include <optional>
 
 #include "easydyn/error.hpp"
 #include "easydyn/results/result_file.hpp"
@@ -72,6 +73,11 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   app.add_option("--foundation", options.foundation, "what the ballast rests on")
       ->capture_default_str()
       ->check(CLI::IsMember({"rigid", "winkler", "winkler-mass", "clm"}));
+  app.add_option(
+         "--site", options.site,
+         "site file (TOML) that the foundation is fitted to, kept beside it as SITE.clm.toml; without "
+         "it the constants of the bundled track")
+      ->check(CLI::ExistingFile);
   app.add_option("--time-step", options.time_step, "of Newmark's method, 1e-6 to 1e-3 [s]")
       ->capture_default_str()
       ->check(in_range(1e-6, 1e-3));
@@ -89,8 +95,14 @@ int run_passage_program(const PassageProgram& program, int argc, char** argv) {
   try {
     if (options.output.empty()) throw InputError("--output is empty, must name a folder");
     std::ranges::sort(options.speeds);
-    if (options.speeds.size() > 1) return run_speed_sweep(program, options);
-    return run_passage(program, options, results::join_command_line(argc, argv));
+    std::optional<SiteOfRun> site;
+    PassageProgram on_site = program;
+    if (!options.site.empty()) {
+      site = read_site_of_run(options.site, program, options.foundation);
+      on_site = place_on(*site, program);
+    }
+    if (options.speeds.size() > 1) return run_speed_sweep(on_site, options);
+    return run_passage(on_site, options, site, results::join_command_line(argc, argv));
   } catch (const std::exception& e) {
     std::cerr << program.name << ": " << e.what() << "\n";
     return 1;

@@ -34,13 +34,14 @@ struct PassageProgram {
 
   /// Rayleigh speed of the upper layer of the site that the foundation stands for [m/s]; 0: unknown.
   double rayleigh_speed = 0;
+  double critical_speed = 0;  ///< of the track on the layers of that site [m/s]; 0: unknown
 
   vehicles::DrawingHeights heights = {};
   double picture_width = 26;  ///< of the animation [m]
   std::string followed;       ///< body that the camera follows
 };
 
-/// Options, one passage or a sweep of speeds, files.
+/// Options, one passage or a sweep of speeds, files. With --site, foundation and speeds of waves are those of a site file.
 /// @returns  exit status: 0 done, 1 an error, 2 wrong options
 int run_passage_program(const PassageProgram& program, int argc, char** argv);
 

@@ -52,7 +52,7 @@ visu::Scene make_scene(const PassageProgram& program, const PassageRun& run) {
 }
 
 std::vector<Parameter> list_parameters(const PassageProgram& program, const PassageProgramOptions& options,
-                                       const PassageRun& run) {
+                                       const PassageRun& run, const std::optional<SiteOfRun>& site) {
   std::vector<Parameter> parameters = vehicles::parameters(program.vehicle);
   for (const Parameter& p : track::parameters(run.data)) parameters.push_back(p);
   for (const Parameter& p : std::vector<Parameter>{
@@ -68,6 +68,8 @@ std::vector<Parameter> list_parameters(const PassageProgram& program, const Pass
                           "1", track::irregularity_spectrum(options.irregularity).source()});
   parameters.push_back({"run", "way driven before the recording", run.course.run_in, "m", "choice"});
   parameters.push_back({"run", "half length of the loaded ground", options.loaded, "m", "option --loaded"});
+  if (site)
+    for (const Parameter& p : parameters_of(*site)) parameters.push_back(p);
   if (options.wheel_flat > 0)
     parameters.push_back({"run", "length of the flat on every wheel pair", options.wheel_flat * mm, "m",
                           "option --wheel-flat, rounded"});
@@ -112,12 +114,15 @@ std::optional<track::ProfileSamples> sample_profile(const PassageProgram& progra
 }  // namespace
 
 int run_passage(const PassageProgram& program, const PassageProgramOptions& options,
-                const std::string& command) {
+                const std::optional<SiteOfRun>& site, const std::string& command) {
   PassageRun run(program, options, options.speeds.front() * km / h);
   const std::string description = describe(program, options, run);
   fmt::print("{}: {}\n", program.name, description);
   fs::create_directories(options.output);  // before the work, in case it cannot be
+  if (site) fmt::print("{}: {}\n", program.name, describe(*site));
   std::vector<std::string> warnings = vehicles::unusual_values(program.vehicle);
+  if (site)
+    for (const std::string& warning : warn_of(*site)) warnings.push_back(warning);
   for (const std::string& warning : run.warn()) warnings.push_back(warning);
   for (const std::string& warning : warnings) fmt::print("{}: warning: {}\n", program.name, warning);
   fmt::print(
@@ -129,7 +134,9 @@ int run_passage(const PassageProgram& program, const PassageProgramOptions& opti
   run.compute([&](double fraction) { progress.update(fraction); });
   progress.finish();
 
-  const std::vector<track::SummaryFigure> summary = run.summarise();
+  std::vector<track::SummaryFigure> summary = run.summarise();
+  if (run.critical_speed > 0)
+    summary.push_back({"critical speed of the track on this ground", run.critical_speed / (km / h), "km/h"});
   for (const auto& figure : summary)
     fmt::print("  {:<52} {:10.4g} {}\n", figure.name, figure.value, figure.unit);
   for (const std::string& warning : run.passage.warnings)
@@ -143,12 +150,19 @@ int run_passage(const PassageProgram& program, const PassageProgramOptions& opti
       .convention =
           "x along the track, y left, z up; track displacements and ground loads positive downward"};
   track::PassageReport report{.description = description,
-                              .parameters = list_parameters(program, options, run),
+                              .parameters = list_parameters(program, options, run, site),
                               .summary = summary,
                               .drawing = vehicles::draw_vehicle(program.vehicle),
                               .tables = tabulate(program.vehicle),
                               .static_loads = run.static_loads(),
                               .profile = sample_profile(program, run, options)};
+  report.free_wave = track::compute_free_track_wave(run.data);
+  if (site) {
+    if (options.foundation == "clm") report.foundation_fit = site->foundation->clm.fit;
+    report.load_speed = site->response.speed;
+    report.load_deflection = site->response.deflection;
+    report.critical_speed = run.critical_speed;
+  }
   if (options.detail == "full") report.scene = make_scene(program, run);
   track::write_passage(options.output / "results.h5", run.passage, report, provenance);
   track::write_passage_channels(options.output / "channels.csv", run.passage, 0);

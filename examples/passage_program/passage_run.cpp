@@ -60,6 +60,7 @@ PassageRun::PassageRun(const PassageProgram& program, const PassageProgramOption
     : is_rough(options.irregularity != "none" || !options.profile.empty()),
       speed(speed_),
       rayleigh_speed(program.rayleigh_speed),
+      critical_speed(program.critical_speed),
       course(plan(program, options.loaded, is_rough || options.wheel_flat > 0)),
       data(program.track) {
   data.foundation = choose_foundation(options.foundation, data.foundation);
@@ -163,6 +164,11 @@ std::vector<std::string> PassageRun::warn() const {
         speed, speed / rayleigh_speed, rayleigh_speed,
         speed < rayleigh_speed ? "its waves gather around the train"
                                : "the train outruns its waves, which trail it as a wake"));
+  if (critical_speed > 0 && speed > 0.7 * critical_speed)
+    warnings.push_back(fmt::format(
+        "speed {:.1f} m/s is {:.2f} of the critical speed {:.1f} m/s of the track on this ground, at which a "
+        "moving load deflects it most",
+        speed, speed / critical_speed, critical_speed));
   if (shortest_wave > 0 && speed / shortest_wave < 80)
     warnings.push_back(fmt::format(
         "the irregularity has no waves shorter than {:g} m: at {:.1f} m/s it excites nothing above {:.1f} Hz",

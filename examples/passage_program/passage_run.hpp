@@ -3,10 +3,12 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "examples/passage_program/passage_program.hpp"
+#include "examples/passage_program/site_of_run.hpp"
 #include "examples/passage_program/train_on_track.hpp"
 #include "track/passage_files.hpp"
 
@@ -21,8 +23,9 @@ struct PassageProgramOptions {
   std::filesystem::path profile;
   double wheel_flat = 0;  // length [mm]
   std::string detail = "full", foundation = "clm";
-  double time_step = 1e-4;  // [s]
-  double loaded = 14;       // half the length [m]
+  std::filesystem::path site;  // empty: the bundled foundation
+  double time_step = 1e-4;     // [s]
+  double loaded = 14;          // half the length [m]
   std::filesystem::path output;
 };
 
@@ -56,6 +59,7 @@ struct PassageRun {
   bool is_rough;
   double speed;                  ///< [m/s]
   double rayleigh_speed;         ///< of the upper layer of the ground [m/s]; 0: not known
+  double critical_speed;         ///< of the track on that ground [m/s]; 0: not known
   double shortest_wave = 0;      ///< of the irregularity [m]; 0: none
   bool has_wide_margin = false;  ///< of track before and behind the wheels, as where they lift off
   Course course;
@@ -67,8 +71,9 @@ struct PassageRun {
 };
 
 /// One speed: results.h5, surface_loads.h5 and channels.csv. @returns exit status
+/// @param site  that --site names, or nothing
 int run_passage(const PassageProgram& program, const PassageProgramOptions& options,
-                const std::string& command);
+                const std::optional<SiteOfRun>& site, const std::string& command);
 /// Every speed as a passage of its own, as many at a time as there are cores: sweep.html. @returns exit status
 int run_speed_sweep(const PassageProgram& program, const PassageProgramOptions& options);
 

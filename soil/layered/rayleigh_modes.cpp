@@ -118,4 +118,42 @@ double find_radiation_frequency(const LayeredGround& ground, double speed, doubl
   return std::numeric_limits<double>::quiet_NaN();
 }
 
+std::optional<ModeCrossing> find_crossing(const LayeredGround& ground, const Eigen::VectorXd& frequency,
+                                          const Eigen::VectorXd& speed) {
+  const Eigen::Index n = frequency.size();
+  const char* const object = "crossing with a Rayleigh mode";
+  require(n >= 2, object, "number of samples", static_cast<double>(n), "", ">= 2");
+  require(speed.size() == n, object, "number of speeds", static_cast<double>(speed.size()), "",
+          fmt::format("{}, one per frequency", n));
+  for (Eigen::Index i = 0; i < n; ++i) {
+    require(frequency[i] > (i == 0 ? 0 : frequency[i - 1]), object, "frequency", frequency[i], "Hz",
+            "> 0 and ascending");
+    require_positive(object, "speed", speed[i], "m/s");
+  }
+  const auto has_caught_up = [&](double f, double c) {
+    const std::vector<double> speeds = compute_rayleigh_speeds(ground, f);
+    return !speeds.empty() && c >= speeds.front();
+  };
+  // The mode lies between these: no need to look for it where the wave is slower.
+  double slowest = std::numeric_limits<double>::infinity();
+  for (const Layer& layer : ground.layers()) slowest = std::min(slowest, layer.cs);
+  bool was_behind = false;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    if (speed[i] < 0.8 * slowest || !has_caught_up(frequency[i], speed[i])) {
+      was_behind = true;
+      continue;
+    }
+    if (!was_behind) continue;
+    const double slope = std::log(speed[i] / speed[i - 1]) / std::log(frequency[i] / frequency[i - 1]);
+    const auto speed_at = [&](double f) { return speed[i] * std::pow(f / frequency[i], slope); };
+    double behind = frequency[i - 1], ahead = frequency[i];
+    while (ahead - behind > 1e-9 * ahead) {
+      const double middle = (behind + ahead) / 2;
+      (has_caught_up(middle, speed_at(middle)) ? ahead : behind) = middle;
+    }
+    return ModeCrossing{ahead, speed_at(ahead)};
+  }
+  return std::nullopt;
+}
+
 }  // namespace easydyn::soil

@@ -268,7 +268,7 @@ void add_indicators(visu::Report& report, const ResultReader& ground, const Rece
 
 }  // namespace
 
-void add_ground_section(visu::Report& report, const ResultReader& ground) {
+void add_ground_section(visu::Report& report, const ResultReader& ground, const ResultReader* track) {
   const Receivers receivers = read_receivers(ground);
   report.add_section("Step 2: ground vibration");
   if (receivers.count() == 0) {
@@ -281,7 +281,7 @@ void add_ground_section(visu::Report& report, const ResultReader& ground) {
   add_decay(report, receivers, ppv);
   add_lines(report, ground, receivers, ppv);
   add_indicators(report, ground, receivers, ppv);
-  add_dispersion(report, ground);
+  add_dispersion(report, ground, track);
 }
 
 std::vector<visu::KeyFigure> ground_key_figures(const ResultReader& ground) {

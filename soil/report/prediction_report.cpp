@@ -196,10 +196,13 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
     add_animation(report, *track);
     report::add_track_section(report, *track);
   }
-  if (ground) report::add_ground_section(report, *ground);
+  if (ground) report::add_ground_section(report, *ground, track);
   if (ground) report::add_verification_section(report, *ground);
   if (comparison) report::add_recoupling_section(report, *comparison);
   if (!no_comparison.empty()) report.add_paragraph("Both steps are not compared: " + no_comparison + ".");
+  if (track && !comparison && track->has("/foundation/fit/frequency"))
+    report.add_section("The foundation of step 1");
+  if (track) report::add_foundation(report, *track);
 
   report.add_section("Parameters and their sources");
   if (track) add_parameters(report, "Vehicle, track and passage", *track);

@@ -18,12 +18,18 @@ inline constexpr double level_reference = 5e-8;
 /// Step 1: vehicle, rail profile, contact forces, deflections, ballast reactions, vehicle accelerations, energies.
 void add_track_section(visu::Report& report, const results::ResultReader& track);
 
-/// Step 2: velocities, spectra, decay with distance, indicators.
-void add_ground_section(visu::Report& report, const results::ResultReader& ground);
+/// The foundation against the compliance of the ground that it was fitted to, if the file holds them.
+void add_foundation(visu::Report& report, const results::ResultReader& track);
+
+/// Step 2: velocities, spectra, decay with distance, indicators. @param track  of step 1, or null
+void add_ground_section(visu::Report& report, const results::ResultReader& ground,
+                        const results::ResultReader* track);
 std::vector<visu::KeyFigure> ground_key_figures(const results::ResultReader& ground);
 
-/// Phase speed of the ground's Rayleigh modes against frequency, as a part of the section on the ground.
-void add_dispersion(visu::Report& report, const results::ResultReader& ground);
+/// Phase speed of the ground's Rayleigh modes against frequency, as a part of the section on the ground; with the free
+/// wave of the track and where both cross, and what a moving load makes of it, if step 1 holds them.
+void add_dispersion(visu::Report& report, const results::ResultReader& ground,
+                    const results::ResultReader* track);
 
 /// Step 2 against the semi-analytical motion, if the file holds it (`soil run --verify`).
 void add_verification_section(visu::Report& report, const results::ResultReader& ground);

@@ -41,7 +41,7 @@ run(${SCRATCH}/build/result_file ${SCRATCH}/numbers.h5)
 # Nothing outside include/easydyn-2, and no private header.
 file(GLOB_RECURSE headers RELATIVE ${prefix}/include ${prefix}/include/*)
 foreach(header IN LISTS headers)
-  if(NOT header MATCHES "^easydyn-2/(easydyn|vehicles|track|soil)/.*\\.hpp$")
+  if(NOT header MATCHES "^easydyn-2/(easydyn|vehicles|track|soil|track_on_soil)/.*\\.hpp$")
     message(FATAL_ERROR "installed in a wrong place: include/${header}")
   endif()
   file(STRINGS ${prefix}/include/${header} private REGEX "^// Private to ")

@@ -9,7 +9,7 @@ source "$here/check.sh"
 tree="$scratch/a house"
 mkdir -p "$tree/examples/sites" "$scratch/bin" "$scratch/elsewhere"
 cp "$here/../../run" "$tree/run"
-printf '// Tram on a soft site.\n//\n// Run: ./run tram\napp.add_option("--output")\n' >"$tree/examples/tram.cpp"
+printf '// Tram on a soft site.\n//\n// Run: ./run tram\napp.add_option("--output")\napp.add_option("--site")\n' >"$tree/examples/tram.cpp"
 cp "$tree/examples/tram.cpp" "$tree/examples/study.cpp"
 printf '// Double pendulum, from positions only.\n' >"$tree/examples/double_pendulum.cpp"
 touch "$tree/examples/sites/tram.toml"
@@ -105,7 +105,7 @@ expect "nothing is built for an unknown name" is "$log" ""
 run tram --speed 40
 expect "the three steps succeed" is "$code" 0
 expect "only the needed targets are built" has "$log" "--target tram soil_program"
-expect "step 1 gets the options" has "$log" "tram --output results/tram --speed 40"
+expect "step 1 gets the site and the options" has "$log" "tram --site examples/sites/tram.toml --output results/tram --speed 40"
 expect "step 2" has "$log" "soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output results/tram"
 expect "step 3" has "$log" "soil report results/tram"
 expect "the report is named last" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
@@ -116,16 +116,21 @@ expect "apt is left alone when nothing is missing" lacks "$log" "apt-get"
 cd "$scratch/elsewhere"
 run tram
 expect "it is configured once" lacks "$log" "cmake -S"
-expect "from elsewhere, results stay in the repository" has "$log" "tram --output $tree/results/tram"
+expect "from elsewhere, results stay in the repository" has "$log" "tram --site $tree/examples/sites/tram.toml --output $tree/results/tram"
 expect "from elsewhere, the report is named" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
 expect "from elsewhere, nothing is left here" is "$(ls -A)" ""
 
 # An output folder of the user's.
 run tram --output mine
-expect "--output DIR reaches step 1 as given" has "$log" "tram --output mine"
+expect "--output DIR reaches step 1 as given" has "$log" "tram --site $tree/examples/sites/tram.toml --output mine"
 expect "--output DIR reaches step 2" has "$log" "mine/surface_loads.h5 --output mine"
 expect "--output DIR reaches step 3" has "$log" "soil report mine"
 expect "the report is there" is "$out" "$scratch/elsewhere/mine/report.html"
+cp "$tree/examples/sites/tram.toml" "$scratch/elsewhere/other.toml"
+run tram --output mine --site other.toml
+expect "another site reaches step 1 once" has "$log" "tram --output mine --site other.toml"
+expect "another site reaches step 2" has "$log" "soil run other.toml mine/surface_loads.h5"
+rm "$scratch/elsewhere/other.toml"
 run tram --output=other
 expect "--output=DIR is understood" is "$out" "$scratch/elsewhere/other/report.html"
 cd "$tree"

@@ -1,0 +1,73 @@
+#include "track_on_soil/site_foundation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easydyn/error.hpp"
+#include "easydyn/require.hpp"
+
+namespace easydyn::track_on_soil {
+namespace {
+
+SiteClm fit_to(const track::GroundCompliance& compliance, const soil::Site& site, const FootprintRow& row,
+               track::ClmFitOptions options) {
+  if (options.weight.size() == 0)  // each octave alike
+    options.weight = compliance.frequency.cwiseInverse();
+  return {site.layers,
+          site.damping_frequency,
+          row,
+          options.lowest,
+          options.highest,
+          options.foundations,
+          calibrate_clm(compliance, options)};
+}
+
+}  // namespace
+
+Eigen::VectorXd calibration_frequencies(double lowest, double highest) {
+  const char* const object = "calibration of the CLM";
+  require_positive(object, "lowest frequency", lowest, "Hz");
+  require(highest > lowest, object, "highest frequency", highest, "Hz",
+          fmt::format("> {:g}, the lowest", lowest));
+  const auto steps = static_cast<Eigen::Index>(std::ceil(highest - lowest - 1e-9));
+  return Eigen::VectorXd::LinSpaced(std::max<Eigen::Index>(steps, 11) + 1, lowest, highest);
+}
+
+SiteClm calibrate_on_site(const soil::Site& site, const FootprintRow& row,
+                          const track::ClmFitOptions& options, int threads) {
+  return fit_to(compute_site_compliance(site, row, calibration_frequencies(options.lowest, options.highest),
+                                        std::max(2, options.foundations), threads),
+                site, row, options);
+}
+
+SiteClm calibrate_on_mobility(const soil::StoredMobility& stored, const std::string& file, double spacing,
+                              const track::ClmFitOptions& options) {
+  return fit_to(
+      transform_mobility(stored, file, spacing, calibration_frequencies(options.lowest, options.highest),
+                         std::max(2, options.foundations)),
+      stored.site, {stored.mobility.length, stored.mobility.width, spacing}, options);
+}
+
+FoundationOnSite find_foundation(const std::filesystem::path& site_file, const soil::Site& site,
+                                 const FootprintRow& row) {
+  const std::filesystem::path cache = clm_file_of(site_file);
+  const std::string name = site_file.filename().string(), cache_name = cache.filename().string();
+  std::string why;
+  if (std::filesystem::exists(cache)) {
+    FoundationOnSite found{read_clm(cache), fmt::format("taken from {}", cache_name)};
+    if (found.clm.belongs_to(site, row)) return found;
+    why = fmt::format(", since {} belongs to other layers or footprints", cache_name);
+  }
+  FoundationOnSite fitted{calibrate_on_site(site, row), fmt::format("fitted to {}{}", name, why)};
+  try {
+    write_clm(cache, fitted.clm);
+    fitted.origin += fmt::format(", and written to {}", cache_name);
+  } catch (const InputError&) {
+    fitted.origin += fmt::format("; {} cannot be written: every run will fit anew", cache.string());
+  }
+  return fitted;
+}
+
+}  // namespace easydyn::track_on_soil
