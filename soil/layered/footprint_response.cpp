@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +9,7 @@
 #include "easydyn/error.hpp"
 #include "easydyn/require.hpp"
 #include "soil/layered/gauss_rule.hpp"
+#include "soil/layered/parallel_loop.hpp"
 #include "soil/layered/radial_response.hpp"
 #include "soil/layered/static_half_space.hpp"
 
@@ -17,7 +17,6 @@ namespace easydyn::soil {
 namespace {
 
 using Eigen::Index;
-using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int points = 6;  // of a cell
 
@@ -57,29 +56,30 @@ double outside(double x, double size) {
   return std::max(0.0, std::abs(x) - size / 2);
 }
 
-// One row of the weights on the nodes of the radial grid.
-class Row {
+// Weights of the nodes of the radial grid, of which a place needs a few panels in a row.
+class NodeWeights {
  public:
-  explicit Row(Index size) : values_(Eigen::VectorXd::Zero(size)) {}
+  explicit NodeWeights(Index size) : values_(Eigen::VectorXd::Zero(size)) {}
   void add(const RadialGrid::Weights& weights, double factor) {
-    values_.segment<RadialGrid::points_per_panel>(weights.first) += factor * weights.values;
+    constexpr Index n = RadialGrid::points_per_panel;
+    values_.segment<n>(weights.first) += factor * weights.values;
+    begin_ = begin_ == end_ ? weights.first : std::min(begin_, weights.first);
+    end_ = std::max(end_, weights.first + n);
   }
-  void move_to(std::vector<Eigen::Triplet<double>>& entries, Index row) {
-    for (Index i = 0; i < values_.size(); ++i) {
-      if (values_(i) != 0) entries.emplace_back(static_cast<int>(row), static_cast<int>(i), values_(i));
-    }
-    values_.setZero();
+  // Weighted sum of the rows of `functions`; forgets the weights.
+  Eigen::VectorXd sum_up(const Eigen::MatrixXd& functions) {
+    const Index count = end_ - begin_;
+    const Eigen::VectorXd sum =
+        functions.middleRows(begin_, count).transpose() * values_.segment(begin_, count);
+    values_.segment(begin_, count).setZero();
+    begin_ = end_ = 0;
+    return sum;
   }
 
  private:
   Eigen::VectorXd values_;
+  Index begin_ = 0, end_ = 0;  // of the nodes with a weight
 };
-
-SparseRows make_rows(Index rows, Index columns, const std::vector<Eigen::Triplet<double>>& entries) {
-  SparseRows matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
 
 void check_request(const FootprintRequest& request) {
   const std::string object = "footprint response";
@@ -248,73 +248,67 @@ class Response {
       if (std::abs(request_.points[p][2]) == depths_[d]) members.push_back(static_cast<Index>(p));
     }
     const bool down = request_.direction == LoadDirection::down;
-    const auto count = static_cast<Index>(members.size());
-    const Index nodes = grid.nodes().size();
-    Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(count, 3);  // static, times the modulus
-    // Two functions at most make a component.
-    std::array<std::vector<Eigen::Triplet<double>>, 3> entries, entries_sum;
-    Row rows[3] = {Row(nodes), Row(nodes), Row(nodes)}, row_sum(nodes);
-    for (Index m = 0; m < count; ++m) {
-      const auto& point = request_.points[static_cast<std::size_t>(members[static_cast<std::size_t>(m)])];
-      const double depth = std::abs(point[2]);
-      const double smallest = radial.static_part ? 1.0 / 8 : 1e-6;
-      for (const SourcePoint& p : make_source(point[0], point[1], radial.static_part ? 0 : depth, smallest)) {
-        const double dx = point[0] - p.x, dy = point[1] - p.y, r = std::hypot(dx, dy);
-        const double c = r > 0 ? dx / r : 0, s = r > 0 ? dy / r : 0;
-        const RadialGrid::Weights weights = grid.compute_weights(r);
-        if (down) {
-          rows[0].add(weights, p.weight * c);
-          rows[1].add(weights, p.weight * s);
-          rows[2].add(weights, -p.weight);
-        } else {
-          row_sum.add(weights, p.weight);
-          rows[0].add(weights, -p.weight * (c * c - s * s));
-          rows[1].add(weights, -p.weight * 2 * c * s);
-          rows[2].add(weights, p.weight * c);
-        }
-      }
-      for (std::size_t i = 0; i < 3; ++i) rows[i].move_to(entries[i], m);
-      row_sum.move_to(entries_sum[0], m);
-      if (radial.static_part) {
-        const auto u = compute_static(point);
-        fixed.row(m) << u[0], u[1], u[2];
-      }
-    }
-    const std::array<const Eigen::MatrixXd*, 3> functions =
-        down ? std::array{&radial.xz, &radial.xz, &radial.zz}
-             : std::array{&radial.difference, &radial.difference, &radial.zx};
-    const std::array<Eigen::MatrixXcd*, 3> u{&out.ux, &out.uy, &out.uz};
-    for (std::size_t i = 0; i < 3; ++i) {
-      Eigen::MatrixXd sum = make_rows(count, nodes, entries[i]) * *functions[i];
-      if (!down && i == 0) sum += make_rows(count, nodes, entries_sum[0]) * radial.sum;
-      put(sum, fixed.col(static_cast<Index>(i)), members, *u[i]);
-    }
+    const double smallest = radial.static_part ? 1.0 / 8 : 1e-6;
+    for_each_chunk(
+        static_cast<Index>(members.size()), count_threads(request_.threads), [&](Index begin, Index end) {
+          const Index nodes = grid.nodes().size();
+          // Two functions at most make a component.
+          NodeWeights x(nodes), y(nodes), z(nodes), x_sum(nodes);
+          for (Index m = begin; m < end; ++m) {
+            const Index place = members[static_cast<std::size_t>(m)];
+            const auto& point = request_.points[static_cast<std::size_t>(place)];
+            const double depth = radial.static_part ? 0 : std::abs(point[2]);
+            for (const SourcePoint& p : make_source(point[0], point[1], depth, smallest)) {
+              const double dx = point[0] - p.x, dy = point[1] - p.y, r = std::hypot(dx, dy);
+              const double c = r > 0 ? dx / r : 0, s = r > 0 ? dy / r : 0;
+              const RadialGrid::Weights weights = grid.compute_weights(r);
+              if (down) {
+                x.add(weights, p.weight * c);
+                y.add(weights, p.weight * s);
+                z.add(weights, -p.weight);
+              } else {
+                x_sum.add(weights, p.weight);
+                x.add(weights, -p.weight * (c * c - s * s));
+                y.add(weights, -p.weight * 2 * c * s);
+                z.add(weights, p.weight * c);
+              }
+            }
+            const std::array<double, 3> fixed =
+                radial.static_part ? compute_static(point) : std::array<double, 3>{};
+            if (down) {
+              put(x.sum_up(radial.xz), fixed[0], out.ux.col(place));
+              put(y.sum_up(radial.xz), fixed[1], out.uy.col(place));
+              put(z.sum_up(radial.zz), fixed[2], out.uz.col(place));
+            } else {
+              put(x_sum.sum_up(radial.sum) + x.sum_up(radial.difference), fixed[0], out.ux.col(place));
+              put(y.sum_up(radial.difference), fixed[1], out.uy.col(place));
+              put(z.sum_up(radial.zx), fixed[2], out.uz.col(place));
+            }
+          }
+        });
   }
 
   void add_means(const RadialResponse& radial, const RadialGrid& grid, FootprintResponse& out) {
-    const auto count = static_cast<Index>(request_.means.size());
-    const Index nodes = grid.nodes().size();
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd fixed(count);
-    Row row(nodes);
-    std::vector<Index> members;
-    for (Index m = 0; m < count; ++m) {
-      const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
-      const auto along = make_difference_rule(request_.length, mean.length, mean.x,
-                                              outside(mean.y, request_.width + mean.width));
-      const auto across = make_difference_rule(request_.width, mean.width, mean.y,
-                                               outside(mean.x, request_.length + mean.length));
-      for (const WeightedPoint& a : along) {
-        for (const WeightedPoint& b : across) {
-          row.add(grid.compute_weights(std::hypot(a.x, b.x)), a.weight * b.weight);
-        }
-      }
-      row.move_to(entries, m);
-      fixed(m) = compute_static_rectangle_mean(nu_, request_.length, request_.width, mean.length, mean.width,
-                                               mean.x, mean.y);
-      members.push_back(m);
-    }
-    put(make_rows(count, nodes, entries) * radial.zz, fixed, members, out.mean);
+    for_each_chunk(static_cast<Index>(request_.means.size()), count_threads(request_.threads),
+                   [&](Index begin, Index end) {
+                     NodeWeights weights(grid.nodes().size());
+                     for (Index m = begin; m < end; ++m) {
+                       const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
+                       const auto along = make_difference_rule(request_.length, mean.length, mean.x,
+                                                               outside(mean.y, request_.width + mean.width));
+                       const auto across =
+                           make_difference_rule(request_.width, mean.width, mean.y,
+                                                outside(mean.x, request_.length + mean.length));
+                       for (const WeightedPoint& a : along) {
+                         for (const WeightedPoint& b : across) {
+                           weights.add(grid.compute_weights(std::hypot(a.x, b.x)), a.weight * b.weight);
+                         }
+                       }
+                       const double fixed = compute_static_rectangle_mean(
+                           nu_, request_.length, request_.width, mean.length, mean.width, mean.x, mean.y);
+                       put(weights.sum_up(radial.zz), fixed, out.mean.col(m));
+                     }
+                   });
   }
 
   // Rule for the difference of two places, each uniform in a segment, whose centres are `offset` apart: the
@@ -336,15 +330,10 @@ class Response {
     return sum;
   }
 
-  // From rows of places, columns (real, imaginary) to rows of frequencies; adds the static part.
-  void put(const Eigen::MatrixXd& sum, const Eigen::VectorXd& fixed, const std::vector<Index>& members,
-           Eigen::MatrixXcd& out) const {
-    for (Index i = 0; i < out.rows(); ++i) {
-      for (Index m = 0; m < sum.rows(); ++m) {
-        out(i, members[static_cast<std::size_t>(m)]) =
-            std::complex<double>(sum(m, 2 * i), sum(m, 2 * i + 1)) + fixed(m) * flexibility_(i);
-      }
-    }
+  // From real and imaginary parts, one after the other, to frequencies; adds the static part.
+  void put(const Eigen::VectorXd& parts, double fixed, Eigen::Ref<Eigen::VectorXcd> out) const {
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) = std::complex<double>(parts(2 * i), parts(2 * i + 1)) + fixed * flexibility_(i);
   }
 
   const LayeredGround& ground_;

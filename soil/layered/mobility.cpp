@@ -13,6 +13,7 @@
 #include "easydyn/require.hpp"
 #include "soil/frequency_filter.hpp"
 #include "soil/layered/footprint_response.hpp"
+#include "soil/layered/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -36,21 +37,25 @@ double compute_band(double relative_frequency) {
 
 // Real signals from the lower half of their spectra, sampled at f_i = i / window; times e^(eta t), from -before.
 Eigen::MatrixXd transform_to_time(const Eigen::MatrixXcd& spectra, Index samples, Index before, double step,
-                                  double eta) {
-  Eigen::FFT<double> transform;
-  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+                                  double eta, int threads) {
   Eigen::MatrixXd signals(samples, spectra.cols());
-  Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(samples / 2 + 1);
-  Eigen::VectorXd signal(samples);
-  for (Index c = 0; c < spectra.cols(); ++c) {
-    padded.head(spectra.rows()) = spectra.col(c);
-    padded(0) = padded(0).real();
-    transform.inv(signal.data(), padded.data(), static_cast<int>(samples));
-    for (Index i = 0; i < samples; ++i) {
-      const double t = step * static_cast<double>(i - before);
-      signals(i, c) = std::exp(eta * t) / step * signal((i - before + samples) % samples);
+  Eigen::VectorXd growth(samples);
+  for (Index i = 0; i < samples; ++i)
+    growth(i) = std::exp(eta * step * static_cast<double>(i - before)) / step;
+  for_each_chunk(spectra.cols(), threads, [&](Index begin, Index end) {
+    Eigen::FFT<double> transform;
+    transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+    Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(samples / 2 + 1);
+    Eigen::VectorXd signal(samples);
+    for (Index c = begin; c < end; ++c) {
+      padded.head(spectra.rows()) = spectra.col(c);
+      padded(0) = padded(0).real();
+      transform.inv(signal.data(), padded.data(), static_cast<int>(samples));
+      signals.col(c).head(before) = growth.head(before).cwiseProduct(signal.tail(before));
+      signals.col(c).tail(samples - before) =
+          growth.tail(samples - before).cwiseProduct(signal.head(samples - before));
     }
-  }
+  });
   return signals;
 }
 
@@ -126,7 +131,7 @@ void update_mobility(const LayeredGround& ground, double highest_frequency, Mobi
     }
   }
   const auto to_time = [&](const Eigen::MatrixXcd& spectra) {
-    return transform_to_time(spectra, samples, mobility.before, mobility.step, eta);
+    return transform_to_time(spectra, samples, mobility.before, mobility.step, eta, count_threads(threads));
   };
   mobility.hx = to_time(response.ux);
   mobility.hy = to_time(response.uy);

@@ -3,18 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
 #include <numbers>
-#include <thread>
 
 #include "easydyn/error.hpp"
 #include "soil/layered/bessel.hpp"
 #include "soil/layered/gauss_rule.hpp"
+#include "soil/layered/parallel_loop.hpp"
 #include "soil/layered/static_half_space.hpp"
 #include "soil/layered/wavenumber_response.hpp"
 
@@ -102,27 +99,6 @@ Nodes make_nodes(const Singularities& s, double largest_distance, double depth, 
   return nodes;
 }
 
-// Calls work(i) for i = 0 ... count - 1 on some threads; rethrows the first error.
-template <typename Work>
-void for_each_parallel(Index count, int threads, const Work& work) {
-  std::atomic<Index> next{0};
-  std::exception_ptr error;
-  std::mutex guard;
-  const auto serve = [&] {
-    try {
-      for (Index i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(guard);
-      if (!error) error = std::current_exception();
-    }
-  };
-  std::vector<std::thread> others;
-  for (int t = 1; t < std::min<Index>(threads, count); ++t) others.emplace_back(serve);
-  serve();
-  for (std::thread& thread : others) thread.join();
-  if (error) std::rethrow_exception(error);
-}
-
 // The five transforms at one depth, nodes x (real, imaginary part at each frequency).
 struct Kernels {
   Eigen::MatrixXd zz, xz, sum, difference, zx;
@@ -133,8 +109,7 @@ class Synthesis {
   Synthesis(const LayeredGround& ground, const RadialRequest& request, const RadialGrid& grid,
             const Eigen::VectorXcd& w)
       : ground_(ground), request_(request), grid_(grid), w_(w) {
-    threads_ = request.threads > 0 ? request.threads
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    threads_ = count_threads(request.threads);
     responses_.resize(request.receiver_depths.size());
     const double top_end = ground.layers().front().thickness;
     for (std::size_t d = 0; d < responses_.size(); ++d) {
@@ -300,18 +275,22 @@ RadialGrid::Weights RadialGrid::compute_weights(double r) const {
   assert(r >= 0 && r <= edges_.back() * (1 + 1e-12));
   Weights weights{panel * points_per_panel, {}};
   // Barycentric formula for Chebyshev points of the first kind.
-  double sum = 0;
+  static const auto factors = [] {
+    Eigen::Matrix<double, points_per_panel, 1> f;
+    for (int i = 0; i < points_per_panel; ++i)
+      f(i) = (i % 2 ? -1 : 1) * std::sin(pi * (i + 0.5) / points_per_panel);
+    return f;
+  }();
+  const auto distance = (r - nodes_.segment<points_per_panel>(weights.first).array()).eval();
   for (int i = 0; i < points_per_panel; ++i) {
-    const double distance = r - nodes_(weights.first + i);
-    if (distance == 0) {
+    if (distance(i) == 0) {
       weights.values.setZero();
       weights.values(i) = 1;
       return weights;
     }
-    weights.values(i) = (i % 2 ? -1 : 1) * std::sin(pi * (i + 0.5) / points_per_panel) / distance;
-    sum += weights.values(i);
   }
-  weights.values /= sum;
+  weights.values = factors.array() / distance;
+  weights.values /= weights.values.sum();
   return weights;
 }
 

@@ -116,6 +116,25 @@ TEST(Superposition, IsTheSumOverAllFootprints) {
   std::printf("footprints: %.1e\n", (motion.footprint_displacement - u).norm() / u.norm());
 }
 
+TEST(Superposition, IsTheSameForAnEvenRowOfFootprintsAndForAnyOthers) {
+  // An even row, in any order, goes by a convolution over the footprints; one more that is off it and not loaded makes
+  // them go pair by pair. Both sum the same terms.
+  Site site = make_site();
+  site.receivers.clear();
+  SurfaceLoads loads = make_loads();
+  std::swap(loads.footprints[1], loads.footprints[5]);
+  loads.force.col(1).swap(loads.force.col(5));
+  SurfaceLoads with_another = loads;
+  with_another.footprints.push_back({2.7, 0.1, 0.3, 2.5});
+  with_another.force.conservativeResize(Eigen::NoChange, 8);
+  with_another.force.col(7).setZero();
+  const Mobility mobility = compute_mobility(site, with_another, 1.2);
+  const GroundMotion even = superpose(mobility, site, loads), any = superpose(mobility, site, with_another);
+  EXPECT_LT((even.footprint_displacement - any.footprint_displacement.leftCols(7)).norm(),
+            1e-12 * even.footprint_displacement.norm());
+  EXPECT_GT(any.footprint_displacement.col(7).norm(), 0.1 * any.footprint_displacement.col(0).norm());
+}
+
 TEST(Superposition, DoesNotDependOnTheWindow) {
   const Site site = make_site();
   const SurfaceLoads loads = make_loads();
