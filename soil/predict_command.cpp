@@ -5,6 +5,7 @@
 #include "easydyn/error.hpp"
 #include "soil/commands.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_prediction.hpp"
 #include "soil/prediction.hpp"
 #include "soil/site_file.hpp"
 
@@ -38,7 +39,8 @@ void run(const Arguments& arguments, const std::string& command_line) {
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
   const Vibrations vibrations = [&] {
     try {
-      return predict_vibrations(obtain_mobility(arguments, loads), loads, arguments.threads);
+      const StoredMobility stored = obtain_mobility(arguments, loads);
+      return predict_vibrations(stored, stored.site, loads, arguments.threads);
     } catch (const ModelError& error) {  // ground and loads do not fit: say which files
       throw ModelError(
           fmt::format("{}, {}: {}", arguments.ground.string(), arguments.loads.string(), error.what()));

@@ -10,6 +10,7 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/footprint_response.hpp"
+#include "soil/layered/layered_mobility.hpp"
 #include "soil/layered/layered_prediction.hpp"
 
 namespace easydyn::soil {

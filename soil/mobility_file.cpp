@@ -1,4 +1,4 @@
-#include "soil/layered/mobility_file.hpp"
+#include "soil/mobility_file.hpp"
 
 #include <fmt/format.h>
 

@@ -4,15 +4,14 @@
 #include <array>
 #include <vector>
 
-#include "soil/layered/layered_ground.hpp"
 #include "soil/site.hpp"
 #include "soil/surface_loads.hpp"
 
 namespace easydyn::soil {
 
-/// Impulse responses of a laterally homogeneous ground to one footprint: all that a train's vibration needs, since the
-/// response to any other footprint is the same, shifted. By symmetry only distances |dx|, |dy| from the footprint's
-/// centre are held.
+/// Impulse responses of a ground to one footprint: all that a train's vibration needs where the ground does not vary
+/// along the track, since the response to any other footprint is the same, shifted. By symmetry only distances |dx|, |dy|
+/// from the footprint's centre are held.
 ///
 /// Displacement u(t) [m] under a vertical force F(t), downward, is u = int h(t - s) F(s) ds. The h are band-limited:
 /// unchanged up to `roll_off` (1.25) times the highest frequency, nothing from 1.75 times it.
@@ -32,14 +31,6 @@ struct Mobility {
 Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers);
 
 /// Time that impulse responses need to die out at the farthest of these distances [s].
-double estimate_window(const LayeredGround& ground, const Mobility& distances);
-
-/// Fills the responses, semi-analytically: frequency responses at w - i eta, e^(-eta window) = 1e-3, so that what
-/// still moves after the window, and folds back into it, is a thousandth.
-/// @param mobility  places, shifts and footprint are given
-/// @param window    [s]; 0: estimate_window()
-/// @param threads   0: one per core
-void update_mobility(const LayeredGround& ground, double highest_frequency, Mobility& mobility,
-                     double window = 0, int threads = 0);
+double estimate_window(double slowest_cs, const Mobility& distances);
 
 }  // namespace easydyn::soil

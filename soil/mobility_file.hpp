@@ -3,7 +3,8 @@
 #include <filesystem>
 
 #include "easydyn/results/result_file.hpp"
-#include "soil/layered/mobility.hpp"
+#include "soil/layered/layered_ground.hpp"
+#include "soil/mobility.hpp"
 #include "soil/site.hpp"
 
 namespace easydyn::soil {

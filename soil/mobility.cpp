@@ -1,0 +1,59 @@
+#include "soil/mobility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "easydyn/error.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+double round_distance(double distance) {
+  return std::round(std::abs(distance) * 1e6) / 1e6;
+}
+
+}  // namespace
+
+Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers) {
+  if (footprints.empty()) throw ModelError("superposition: no footprint");
+  const Footprint& first = footprints.front();
+  Mobility mobility;
+  mobility.length = first.length;
+  mobility.width = first.width;
+  std::set<std::array<double, 3>> places;
+  std::set<std::array<double, 2>> shifts;
+  for (std::size_t j = 0; j < footprints.size(); ++j) {
+    const Footprint& f = footprints[j];
+    if (std::abs(f.length - first.length) > 1e-6 || std::abs(f.width - first.width) > 1e-6) {
+      throw ModelError(
+          fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m like the first", j + 1,
+                      f.length, f.width, first.length, first.width));
+    }
+    if (f.direction != LoadDirection::down) {
+      throw ModelError(
+          fmt::format("superposition: footprint {} is loaded horizontally, must be vertically", j + 1));
+    }
+    for (const Receiver& r : receivers) {
+      places.insert(
+          {round_distance(r.position[0] - f.x), round_distance(r.position[1] - f.y), r.position[2]});
+    }
+    for (const Footprint& g : footprints)
+      shifts.insert({round_distance(g.x - f.x), round_distance(g.y - f.y)});
+  }
+  mobility.places.assign(places.begin(), places.end());
+  mobility.shifts.assign(shifts.begin(), shifts.end());
+  return mobility;
+}
+
+double estimate_window(double slowest_cs, const Mobility& distances) {
+  double farthest = 0;
+  for (const auto& p : distances.places) farthest = std::max(farthest, std::hypot(p[0], p[1], p[2]));
+  for (const auto& s : distances.shifts) farthest = std::max(farthest, std::hypot(s[0], s[1]));
+  // Rayleigh waves, c_R > 0.86 c_S, slower by dispersion; then echoes of the layers.
+  return 1.5 * farthest / (0.8 * slowest_cs) + 1;
+}
+
+}  // namespace easydyn::soil

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "soil/mobility_file.hpp"
+#include "soil/surface_loads.hpp"
+#include "soil/vibrations.hpp"
+
+namespace easydyn::soil {
+
+/// The same prediction as by finite elements under all loads, from impulse responses.
+/// @param site  receivers, taper and duration; its ground is that of the responses (find_ground_difference())
+/// @throws ModelError if the responses lack a distance that receivers or loads need
+Vibrations predict_vibrations(const StoredMobility& stored, const Site& site, const SurfaceLoads& loads,
+                              int threads = 0);
+
+}  // namespace easydyn::soil
