@@ -25,7 +25,7 @@ double compute_band(double relative_frequency) {
 ImpulseSynthesis::ImpulseSynthesis(double highest_frequency, double window)
     : highest_frequency_(highest_frequency), step_(1 / (4 * highest_frequency)) {
   before_ = static_cast<Index>(periods_before / highest_frequency / step_);
-  samples_ = compute_fast_length(before_ + static_cast<Index>(std::ceil(window / step_)));
+  samples_ = compute_fast_length(before_ + static_cast<Index>(std::ceil(window / step_ - 1e-6)));
   period_ = static_cast<double>(samples_) * step_;
   eta_ = -std::log(fold_back) / period_;
   w_.resize(static_cast<Index>(std::ceil(band_end * highest_frequency * period_)));

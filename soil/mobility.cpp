@@ -17,6 +17,13 @@ double round_distance(double distance) {
 
 }  // namespace
 
+double Mobility::farthest() const {
+  double farthest = 0;
+  for (const auto& p : places) farthest = std::max(farthest, std::hypot(p[0], p[1], p[2]));
+  for (const auto& s : shifts) farthest = std::max(farthest, std::hypot(s[0], s[1]));
+  return farthest;
+}
+
 Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers) {
   if (footprints.empty()) throw ModelError("superposition: no footprint");
   const Footprint& first = footprints.front();
@@ -49,11 +56,8 @@ Mobility list_distances(const std::vector<Footprint>& footprints, const std::vec
 }
 
 double estimate_window(double slowest_cs, const Mobility& distances) {
-  double farthest = 0;
-  for (const auto& p : distances.places) farthest = std::max(farthest, std::hypot(p[0], p[1], p[2]));
-  for (const auto& s : distances.shifts) farthest = std::max(farthest, std::hypot(s[0], s[1]));
   // Rayleigh waves, c_R > 0.86 c_S, slower by dispersion; then echoes of the layers.
-  return 1.5 * farthest / (0.8 * slowest_cs) + 1;
+  return 1.5 * distances.farthest() / (0.8 * slowest_cs) + 1;
 }
 
 }  // namespace easydyn::soil

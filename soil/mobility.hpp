@@ -24,6 +24,8 @@ struct Mobility {
   std::vector<std::array<double, 2>> shifts;  ///< |dx|, |dy| [m] of the neighbouring footprints
   Eigen::MatrixXd hx, hy, hz;                 ///< samples x places [m/(N s)], for dx, dy >= 0; z up
   Eigen::MatrixXd mean;  ///< samples x shifts [m/(N s)]: mean downward displacement of a footprint there
+
+  double farthest() const;  ///< [m] of places and shifts
 };
 
 /// Distances between the footprints of the loads and the receivers, and among the footprints, each once (to 1e-6 m).

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
+#include "easydyn/visu/parameter_json.hpp"
 #include "soil/site_file.hpp"
 
 namespace easydyn::soil {
@@ -122,6 +123,10 @@ void write_mobility(const std::filesystem::path& path, const StoredMobility& sto
                     {.units = "m/(N s)",
                      .description = "mean displacement of a footprint there" + band,
                      .frame = "downward"});
+  if (!stored.identity.empty())
+    file.write_names("/identity", stored.identity, "what the responses depend on, beside their distances");
+  file.write_text("/parameters", visu::to_json(stored.parameters),
+                  "JSON array of {group, name, value, unit, source}");
   file.write_text("/site", stored.site.text, "the site file, as read");
   file.commit();
 }
@@ -155,6 +160,11 @@ StoredMobility read_mobility(const std::filesystem::path& path) {
   }
   if (const std::string fault = find_fault(m); !fault.empty()) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));
+  }
+  if (reader.has("/identity")) stored.identity = reader.read_names("/identity");
+  if (reader.has("/parameters")) {
+    stored.parameters =
+        visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   }
   stored.site = parse_site(reader.read_text("/site"), path.string() + ":/site");
   return stored;

@@ -7,9 +7,7 @@
 namespace easydyn::soil {
 
 /// The same prediction as by finite elements under all loads, from impulse responses.
-/// @param site  receivers, taper and duration; its ground is that of the responses (find_ground_difference())
 /// @throws ModelError if the responses lack a distance that receivers or loads need
-Vibrations predict_vibrations(const StoredMobility& stored, const Site& site, const SurfaceLoads& loads,
-                              int threads = 0);
+Vibrations predict_vibrations(const StoredMobility& stored, const SurfaceLoads& loads, int threads = 0);
 
 }  // namespace easydyn::soil

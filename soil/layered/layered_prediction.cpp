@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/layered/layered_mobility.hpp"
 #include "soil/layered/superposition.hpp"
 #include "soil/recoupling.hpp"
@@ -34,7 +35,8 @@ StoredMobility compute_mobility(const Site& site, const std::vector<Footprint>& 
   StoredMobility stored;
   stored.site = site;
   stored.damping = damping;
-  stored.method = "layered half-space";
+  stored.method = layered_method;
+  stored.identity = describe_responses(site, damping, nullptr);
   stored.mobility = list_distances(footprints, site.receivers);
   update_mobility(LayeredGround(site, damping), site.highest_frequency, stored.mobility, window, threads);
   return stored;
