@@ -95,6 +95,12 @@ fs::path prepare_result(const fs::path& folder) {
   return result;
 }
 
+std::string join_names(const std::vector<fs::path>& files) {
+  std::string names;
+  for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
+  return names;
+}
+
 void warn_of_unusual_values(const fs::path& path, const Site& site) {
   for (const std::string& unusual : unusual_values(site)) {
     fmt::print(stderr, "soil: warning: {}: {}\n", path.string(), unusual);

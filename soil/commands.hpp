@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "soil/run_control.hpp"
 #include "soil/vibrations.hpp"
@@ -40,6 +41,9 @@ void print_comparison(const Vibrations& vibrations);
 /// Makes the folder and renames the `vibrations.h5` of an earlier run, so that it does not look like this run's.
 /// @returns path of the result to come  @throws InputError if that is not possible
 std::filesystem::path prepare_result(const std::filesystem::path& folder);
+
+/// The files in their order, for messages.
+std::string join_names(const std::vector<std::filesystem::path>& files);
 
 /// Warnings on standard error about values of the site that look like a wrong unit.
 void warn_of_unusual_values(const std::filesystem::path& path, const Site& site);

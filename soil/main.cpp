@@ -56,7 +56,8 @@ Reads results.h5 (the train and the track, if there is one) and vibrations.h5 (t
 writes report.html beside them: one page that opens without a network.)";
 
 struct RunArguments {
-  fs::path site, loads, output;
+  fs::path site, output;
+  std::vector<fs::path> loads;
   std::string damping = "constant";
   bool dry_run = false;
   bool full_model = false;
@@ -72,7 +73,9 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       *app.add_subcommand("run", "Waves in the ground under given loads, by 3D spectral elements");
   command.footer(run_footer);
   command.add_option("SITE", run.site, "Site file (TOML)")->required()->type_name("");
-  command.add_option("SURFACE_LOADS", run.loads, "Load histories (HDF5)")->required()->type_name("");
+  command.add_option("SURFACE_LOADS", run.loads, "Load histories (HDF5); of several files all act together")
+      ->required()
+      ->type_name("");
   command.add_option("-o,--output", run.output, "Folder of vibrations.h5, made if needed")
       ->required()
       ->type_name("DIR");
@@ -158,7 +161,7 @@ void run(RunArguments& arguments, const std::string& command_line) {
       return make_solver(site, loads, arguments.options);
     } catch (const ModelError& error) {  // site and loads do not fit: say which files
       throw ModelError(
-          fmt::format("{}, {}: {}", arguments.site.string(), arguments.loads.string(), error.what()));
+          fmt::format("{}, {}: {}", arguments.site.string(), join_names(arguments.loads), error.what()));
     }
   }();
   const RunControl control = make_run_control(arguments);

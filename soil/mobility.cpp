@@ -27,6 +27,7 @@ double Mobility::farthest() const {
 Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers) {
   if (footprints.empty()) throw ModelError("superposition: no footprint");
   const Footprint& first = footprints.front();
+  if (first.is_point()) throw ModelError("superposition: footprint 1 is a point, must be a rectangle");
   Mobility mobility;
   mobility.length = first.length;
   mobility.width = first.width;

@@ -38,7 +38,8 @@ anew. A run that was stopped goes on when the same command is given again.
 Exit status: as that of soil run.)";
 
 struct Arguments {
-  fs::path site, loads, output;
+  fs::path site, output;
+  std::vector<fs::path> loads;
   std::string method = "layered", damping = "constant";
   std::vector<double> footprint;  // length, width
   double spacing = 0.6, window = 0;
@@ -180,7 +181,7 @@ Action add_mobility_command(CLI::App& app) {
   command.footer(footer);
   command.add_option("SITE", arguments->site, "Site file (TOML)")->required()->type_name("");
   command.add_option("--loads", arguments->loads, "Load histories whose footprints are meant (HDF5)")
-      ->type_name("SURFACE_LOADS.h5");
+      ->type_name("SURFACE_LOADS.h5 ...");
   command
       .add_option("--footprint", arguments->footprint, "Without --loads: length along x, width along y [m]")
       ->expected(2)

@@ -26,7 +26,8 @@ file as it is now: its ground must still be the same, and the distances of its r
 vibrations.h5, is that of `soil run`.)";
 
 struct Arguments {
-  fs::path ground, loads, output, site;
+  fs::path ground, output, site;
+  std::vector<fs::path> loads;
   bool verify = false;
   int threads = 0;
 };
@@ -76,7 +77,7 @@ void run(const Arguments& arguments, const std::string& command_line) {
       return predicted;
     } catch (const ModelError& error) {  // ground and loads do not fit: say which files
       throw ModelError(
-          fmt::format("{}, {}: {}", arguments.ground.string(), arguments.loads.string(), error.what()));
+          fmt::format("{}, {}: {}", arguments.ground.string(), join_names(arguments.loads), error.what()));
     }
   }();
   write_vibrations(result, vibrations,
@@ -96,7 +97,11 @@ Action add_predict_command(CLI::App& app) {
   command.add_option("GROUND", arguments->ground, "Impulse responses (HDF5) or site file (TOML)")
       ->required()
       ->type_name("");
-  command.add_option("SURFACE_LOADS", arguments->loads, "Load histories (HDF5)")->required()->type_name("");
+  command
+      .add_option("SURFACE_LOADS", arguments->loads,
+                  "Load histories (HDF5); of several files all act together")
+      ->required()
+      ->type_name("");
   command.add_option("-o,--output", arguments->output, "Folder of vibrations.h5, made if needed")
       ->required()
       ->type_name("DIR");

@@ -36,7 +36,8 @@ std::string checksum_of(const Site& site) {
 
 void add(Checksum& sum, const std::vector<Footprint>& footprints) {
   for (const Footprint& f : footprints)
-    for (const double value : {f.x, f.y, f.length, f.width, static_cast<double>(f.direction)})
+    for (const double value :
+         {f.x, f.y, f.length, f.width, static_cast<double>(f.direction), static_cast<double>(f.source)})
       sum.add_value(value);
 }
 

@@ -91,9 +91,20 @@ FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footpri
   check_range("y", number, y0, y1, lattice.interior_y());
 
   const GllRule rule(lattice.degree);
-  const double area = footprint.length * footprint.width, part = (x1 - x0) * (y1 - y0);
   const int top = lattice.nz() * lattice.degree;
   FootprintWeights result;
+  if (footprint.is_point()) {
+    const double share = (lattice.half_model ? 0.5 : 1) * (lattice.quarter_model ? 0.5 : 1);
+    for (const LineWeight& wy : interpolate_line(rule, lattice.y, footprint.y))
+      for (const LineWeight& wx : interpolate_line(rule, lattice.x, footprint.x)) {
+        const double weight = wx.weight * wy.weight;
+        if (std::abs(weight) < 1e-14) continue;
+        result.force.push_back({wx.node, wy.node, top, share * weight});
+        result.mean.push_back({wx.node, wy.node, top, weight});
+      }
+    return result;
+  }
+  const double area = footprint.length * footprint.width, part = (x1 - x0) * (y1 - y0);
   for (const LineWeight& wy : integrate_line(rule, lattice.y, y0, y1))
     for (const LineWeight& wx : integrate_line(rule, lattice.x, x0, x1)) {
       result.force.push_back({wx.node, wy.node, top, wx.weight * wy.weight / area});

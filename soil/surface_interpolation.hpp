@@ -14,7 +14,8 @@ struct NodeWeight {
 
 /// Uniform unit force over a footprint, integrated exactly with the shape functions: the nodal forces, which
 /// are at once the weights of the mean displacement over the footprint. In the half and the quarter model the
-/// part inside only; the nodal forces then add up to 1/2 or 1/4 (`force`) and the mean weights to 1 (`mean`).
+/// part inside only; the nodal forces then add up to 1/2 or 1/4 (`force`) and the mean weights to 1 (`mean`). At a
+/// point: the shape functions there. The displacement under a point load depends on the mesh (it has no limit).
 struct FootprintWeights {
   std::vector<NodeWeight> force, mean;
 };
