@@ -221,9 +221,10 @@ Lattice make_lattice(const Site& site, const std::vector<Footprint>& footprints,
   };
   for (std::size_t f = 0; f < footprints.size(); ++f) {
     const Footprint& foot = footprints[f];
-    require(foot.length > 0 && foot.width > 0 && std::isfinite(foot.length) && std::isfinite(foot.width),
-            fmt::format("footprint {}: length = {} m, width = {} m, must be > 0", f + 1, foot.length,
-                        foot.width));
+    require(foot.is_point() || (foot.length > 0 && foot.width > 0 && std::isfinite(foot.length) &&
+                                std::isfinite(foot.width)),
+            fmt::format("footprint {}: length = {} m, width = {} m, must be > 0 (or both 0: a point)", f + 1,
+                        foot.length, foot.width));
     require(std::isfinite(foot.x) && std::isfinite(foot.y),
             fmt::format("footprint {}: x = {} m, y = {} m, must be finite", f + 1, foot.x, foot.y));
     require(!options.quarter_model || (std::abs(foot.x) < 1e-9 && std::abs(foot.y) < 1e-9),

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "easydyn/error.hpp"
 #include "soil/site.hpp"
@@ -62,19 +64,26 @@ Eigen::VectorXd compute_taper(const std::vector<Footprint>& footprints, double t
   Eigen::VectorXd taper = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(footprints.size()));
   if (!(taper_length >= 0))
     throw ModelError(fmt::format("site: taper_length = {} m, must be >= 0", taper_length));
-  const auto by_x = [](const Footprint& a, const Footprint& b) { return a.x < b.x; };
-  const auto [first, last] = std::minmax_element(footprints.begin(), footprints.end(), by_x);
-  const double length = last->x - first->x;
-  if (taper_length == 0 || length < 1e-9) return taper;
-  if (length < 2 * taper_length)
-    throw ModelError(
-        fmt::format("site: taper_length = {} m, must be in 0..{} m, half of the loaded track "
-                    "(0: no taper; {} m unless [loads] says it)",
-                    taper_length, length / 2, Site().taper_length));
+  if (taper_length == 0) return taper;
+  std::map<int, std::array<double, 2>> reach;  // of the centres of each source [m]
+  for (const Footprint& footprint : footprints) {
+    const auto [range, is_new] = reach.try_emplace(footprint.source, std::array{footprint.x, footprint.x});
+    range->second = {std::min(range->second[0], footprint.x), std::max(range->second[1], footprint.x)};
+  }
+  for (const auto& [source, range] : reach) {
+    const double length = range[1] - range[0];
+    if (length >= 1e-9 && length < 2 * taper_length)
+      throw ModelError(
+          fmt::format("site: taper_length = {} m, must be in 0..{} m, half of the loaded track "
+                      "(0: no taper; {} m unless [loads] says it)",
+                      taper_length, length / 2, Site().taper_length));
+  }
   for (Eigen::Index j = 0; j < taper.size(); ++j) {
-    const double x = footprints[static_cast<std::size_t>(j)].x;
-    const double distance = std::min(x - first->x, last->x - x);
-    if (distance < taper_length) taper(j) = 0.5 - 0.5 * std::cos(M_PI * distance / taper_length);
+    const Footprint& footprint = footprints[static_cast<std::size_t>(j)];
+    const auto [first, last] = reach.at(footprint.source);
+    const double distance = std::min(footprint.x - first, last - footprint.x);
+    if (last - first >= 1e-9 && distance < taper_length)
+      taper(j) = 0.5 - 0.5 * std::cos(M_PI * distance / taper_length);
   }
   return taper;
 }

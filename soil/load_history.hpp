@@ -27,7 +27,7 @@ class LoadHistory {
 /// Factor on each load so that the loaded track fades out at both ends: raised cosine of the distance of the
 /// footprint's centre from the first or last centre over `taper_length` [m], 0 at that centre. A load that
 /// appeared at the first sleeper at full strength would send a spurious pulse. All ones where all footprints
-/// have the same x, or taper_length = 0.
+/// have the same x, or taper_length = 0. Each Footprint::source for itself: a machine beside a track is not an end of it.
 /// @throws ModelError if the loaded track is shorter than two tapers
 Eigen::VectorXd compute_taper(const std::vector<Footprint>& footprints, double taper_length);
 

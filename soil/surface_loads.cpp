@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "easydyn/error.hpp"
+#include "soil/load_history.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -41,10 +43,10 @@ std::string find_fault(const SurfaceLoads& loads) {
     if (!std::isfinite(footprint.x) || !std::isfinite(footprint.y)) {
       return fmt::format("\"/position\": row {} is ({}, {}) m, must be finite", j, footprint.x, footprint.y);
     }
-    if (!(footprint.length > 0) || !(footprint.width > 0) || !std::isfinite(footprint.length) ||
-        !std::isfinite(footprint.width)) {
-      return fmt::format("\"/size\": row {} is {} m x {} m, must be > 0", j, footprint.length,
-                         footprint.width);
+    if (!footprint.is_point() && (!(footprint.length > 0) || !(footprint.width > 0) ||
+                                  !std::isfinite(footprint.length) || !std::isfinite(footprint.width))) {
+      return fmt::format("\"/size\": row {} is {} m x {} m, must be > 0 (or both 0: a point)", j,
+                         footprint.length, footprint.width);
     }
   }
   for (Eigen::Index i = 0; i < loads.force.rows(); ++i) {
@@ -137,6 +139,47 @@ SurfaceLoads read_surface_loads(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));
   }
   return loads;
+}
+
+SurfaceLoads join_surface_loads(const std::vector<SurfaceLoads>& sources, double preload_time) {
+  if (sources.empty()) throw ModelError("surface loads: no source, must be at least 1");
+  if (sources.size() == 1) return sources.front();
+  double begin = std::numeric_limits<double>::infinity(), end = -begin, step = begin;
+  Eigen::Index count = 0;
+  std::vector<LoadHistory> histories;
+  for (const SurfaceLoads& source : sources) {
+    const LoadHistory& history = histories.emplace_back(source, preload_time);
+    begin = std::min(begin, history.first_time());
+    end = std::max(end, history.last_time());
+    step = std::min(
+        step, (history.last_time() - history.first_time()) / static_cast<double>(source.time.size() - 1));
+    count += source.force.cols();
+  }
+  const auto samples = static_cast<Eigen::Index>(std::ceil((end - begin) / step - 1e-6)) + 1;
+  SurfaceLoads joined;
+  joined.time = begin + step * Eigen::ArrayXd::LinSpaced(samples, 0, static_cast<double>(samples - 1));
+  joined.force.resize(samples, count);
+  Eigen::Index first = 0;
+  Eigen::VectorXd forces;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    for (Footprint footprint : sources[s].footprints) {
+      footprint.source = static_cast<int>(s);
+      joined.footprints.push_back(footprint);
+    }
+    const Eigen::Index columns = sources[s].force.cols();
+    for (Eigen::Index i = 0; i < samples; ++i) {
+      histories[s].update_forces(joined.time(i), forces);
+      joined.force.row(i).segment(first, columns) = forces;
+    }
+    first += columns;
+  }
+  return joined;
+}
+
+SurfaceLoads read_surface_loads(const std::vector<std::filesystem::path>& paths, double preload_time) {
+  std::vector<SurfaceLoads> sources;
+  for (const std::filesystem::path& path : paths) sources.push_back(read_surface_loads(path));
+  return join_surface_loads(sources, preload_time);
 }
 
 }  // namespace easydyn::soil

@@ -9,9 +9,9 @@
 #include "easydyn/error.hpp"
 #include "easydyn/require.hpp"
 #include "soil/layered/gauss_rule.hpp"
-#include "soil/layered/parallel_loop.hpp"
 #include "soil/layered/radial_response.hpp"
 #include "soil/layered/static_half_space.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -93,10 +93,8 @@ void check_request(const FootprintRequest& request) {
     require(request.source_depth == 0, object, "source depth", request.source_depth, "m",
             "0 for a load on a rectangle");
   }
-  if (is_point || request.direction != LoadDirection::down) {
-    if (!request.means.empty()) {
-      throw ModelError(object + ": means over footprints are for vertical loads on a rectangle");
-    }
+  if (is_point && !request.means.empty()) {
+    throw ModelError(object + ": means over footprints are for loads on a rectangle");
   }
   for (const auto& point : request.points) {
     require_finite(object, "x", point[0], "m");
@@ -122,6 +120,7 @@ class Response {
     if (request_.direction == LoadDirection::y) {
       std::swap(request_.length, request_.width);
       for (auto& point : request_.points) point = {point[1], -point[0], point[2]};
+      for (Footprint& mean : request_.means) mean = {mean.y, -mean.x, mean.width, mean.length};
     }
     nu_ = ground.layers().front().poisson_ratio();
     is_point_ = request_.length == 0;
@@ -148,10 +147,14 @@ class Response {
     FootprintResponse out;
     for (Eigen::MatrixXcd* u : {&out.ux, &out.uy, &out.uz})
       u->resize(nf, static_cast<Index>(request_.points.size()));
+    const bool down = request_.direction == LoadDirection::down;
     out.mean.resize(nf, static_cast<Index>(request_.means.size()));
+    if (!down) {
+      out.mean_x.resize(nf, out.mean.cols());
+      out.mean_y.resize(nf, out.mean.cols());
+    }
     if (nf == 0 || depths_.empty()) return out;
     const RadialGrid grid(smallest_ / 4, largest_, largest_wavenumber_);
-    const bool down = request_.direction == LoadDirection::down;
     const std::vector<RadialResponse> radial =
         compute_radial_responses(ground_,
                                  {.source_depth = request_.source_depth,
@@ -171,6 +174,8 @@ class Response {
     if (request_.direction == LoadDirection::y) {  // turn back
       out.ux.swap(out.uy);
       out.ux *= -1;
+      out.mean_x.swap(out.mean_y);
+      out.mean_x *= -1;
     }
     return out;
   }
@@ -289,26 +294,72 @@ class Response {
   }
 
   void add_means(const RadialResponse& radial, const RadialGrid& grid, FootprintResponse& out) {
-    for_each_chunk(static_cast<Index>(request_.means.size()), count_threads(request_.threads),
-                   [&](Index begin, Index end) {
-                     NodeWeights weights(grid.nodes().size());
-                     for (Index m = begin; m < end; ++m) {
-                       const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
-                       const auto along = make_difference_rule(request_.length, mean.length, mean.x,
-                                                               outside(mean.y, request_.width + mean.width));
-                       const auto across =
-                           make_difference_rule(request_.width, mean.width, mean.y,
-                                                outside(mean.x, request_.length + mean.length));
-                       for (const WeightedPoint& a : along) {
-                         for (const WeightedPoint& b : across) {
-                           weights.add(grid.compute_weights(std::hypot(a.x, b.x)), a.weight * b.weight);
-                         }
-                       }
-                       const double fixed = compute_static_rectangle_mean(
-                           nu_, request_.length, request_.width, mean.length, mean.width, mean.x, mean.y);
-                       put(weights.sum_up(radial.zz), fixed, out.mean.col(m));
-                     }
-                   });
+    const auto update = [&](Index begin, Index end) {
+      const Index nodes = grid.nodes().size();
+      NodeWeights x(nodes), y(nodes), z(nodes), x_sum(nodes);
+      for (Index m = begin; m < end; ++m) {
+        const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
+        const auto along = make_difference_rule(request_.length, mean.length, mean.x,
+                                                outside(mean.y, request_.width + mean.width));
+        const auto across = make_difference_rule(request_.width, mean.width, mean.y,
+                                                 outside(mean.x, request_.length + mean.length));
+        const bool down = request_.direction == LoadDirection::down;
+        for (const WeightedPoint& a : along) {
+          for (const WeightedPoint& b : across) {
+            const double r = std::hypot(a.x, b.x), weight = a.weight * b.weight;
+            const RadialGrid::Weights weights = grid.compute_weights(r);
+            if (down) {
+              z.add(weights, weight);
+              continue;
+            }
+            const double c = r > 0 ? a.x / r : 0, s = r > 0 ? b.x / r : 0;
+            x_sum.add(weights, weight);
+            x.add(weights, -weight * (c * c - s * s));
+            y.add(weights, -weight * 2 * c * s);
+            z.add(weights, -weight * c);
+          }
+        }
+        if (down) {
+          put(z.sum_up(radial.zz),
+              compute_static_rectangle_mean(nu_, request_.length, request_.width, mean.length, mean.width,
+                                            mean.x, mean.y),
+              out.mean.col(m));
+          continue;
+        }
+        const std::array<double, 3> fixed = compute_static_mean(mean);
+        put(x_sum.sum_up(radial.sum) + x.sum_up(radial.difference), fixed[0], out.mean_x.col(m));
+        put(y.sum_up(radial.difference), fixed[1], out.mean_y.col(m));
+        put(z.sum_up(radial.zx), fixed[2], out.mean.col(m));
+      }
+    };
+    for_each_chunk(static_cast<Index>(request_.means.size()), count_threads(request_.threads), update);
+  }
+
+  // Static mean over a footprint under a load along x, times the shear modulus: x, y, downward. By Gauss's rule,
+  // near the load in cells that shrink towards the edges, where the displacement has infinite slopes.
+  std::array<double, 3> compute_static_mean(const Footprint& mean) const {
+    static const GaussRule rule(points);
+    const double size = std::max({request_.length, request_.width, mean.length, mean.width});
+    const std::vector<double> edges = std::hypot(mean.x, mean.y) > 5 * size
+                                          ? std::vector<double>{0, 1}
+                                          : std::vector<double>{0,     0.003, 0.03,  0.125, 0.25,  0.375, 0.5,
+                                                                0.625, 0.75,  0.875, 0.97,  0.997, 1};
+    std::vector<WeightedPoint> segment;  // of [-1/2, 1/2]
+    for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+      const double length = edges[e + 1] - edges[e];
+      for (int i = 0; i < points; ++i)
+        segment.push_back({edges[e] + length / 2 * (1 + rule.points(i)) - 0.5, length / 2 * rule.weights(i)});
+    }
+    std::array<double, 3> u{};
+    for (const WeightedPoint& a : segment) {
+      for (const WeightedPoint& b : segment) {
+        const StaticRectangleResponse s = compute_static_rectangle_response(
+            nu_, request_.length, request_.width, mean.x + a.x * mean.length, mean.y + b.x * mean.width);
+        const double weight = a.weight * b.weight;
+        u = {u[0] + weight * s.xx, u[1] + weight * s.yx, u[2] + weight * s.zx};
+      }
+    }
+    return u;
   }
 
   // Rule for the difference of two places, each uniform in a segment, whose centres are `offset` apart: the

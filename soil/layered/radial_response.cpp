@@ -11,9 +11,9 @@
 #include "easydyn/error.hpp"
 #include "soil/layered/bessel.hpp"
 #include "soil/layered/gauss_rule.hpp"
-#include "soil/layered/parallel_loop.hpp"
 #include "soil/layered/static_half_space.hpp"
 #include "soil/layered/wavenumber_response.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {

@@ -14,8 +14,8 @@
 
 #include "easydyn/error.hpp"
 #include "soil/frequency_filter.hpp"
-#include "soil/layered/parallel_loop.hpp"
 #include "soil/load_history.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -93,8 +93,9 @@ Eigen::MatrixXd sample_loads(const LoadHistory& history, const Eigen::VectorXd& 
   return force.transpose();
 }
 
-// Footprints in a row along x at one spacing.
+// Footprints in a row along x at one spacing, loaded in one direction.
 struct EvenRow {
+  LoadDirection direction = LoadDirection::down;
   double spacing = 0;            // [m]
   std::vector<Index> footprint;  // in the order of x
 };
@@ -115,10 +116,16 @@ std::optional<EvenRow> find_even_row(const std::vector<Footprint>& footprints) {
   if (row.spacing <= 2 * tolerance) return {};
   for (std::size_t i = 0; i < count; ++i) {
     if (std::abs(at(i).x - at(0).x - row.spacing * static_cast<double>(i)) > tolerance / 2 ||
-        std::abs(at(i).y - at(0).y) > tolerance / 2)
+        std::abs(at(i).y - at(0).y) > tolerance / 2 || at(i).direction != at(0).direction)
       return {};
   }
+  row.direction = at(0).direction;
   return row;
+}
+
+// Place of a direction in x, y, z.
+std::size_t component(LoadDirection direction) {
+  return direction == LoadDirection::x ? 0 : direction == LoadDirection::y ? 1 : 2;
 }
 
 class Superposition {
@@ -145,9 +152,10 @@ class Superposition {
                         "responses",
                         j + 1, f.length, f.width, mobility.length, mobility.width));
       }
-      if (f.direction != LoadDirection::down) {
+      if (f.direction != LoadDirection::down && !mobility.horizontal.contains(f.direction)) {
         throw ModelError(
-            fmt::format("superposition: footprint {} is loaded horizontally, must be vertically", j + 1));
+            fmt::format("superposition: no responses to a load along {}, which footprint {} needs",
+                        f.direction == LoadDirection::x ? "x" : "y", j + 1));
       }
     }
     SurfaceLoads limited = loads;
@@ -197,8 +205,12 @@ class Superposition {
   void add_receivers() {
     const Finder<3> finder(mobility_.places);
     const auto nr = static_cast<Index>(site_.receivers.size()), nl = forces_.cols();
-    const Eigen::MatrixXcd h[3] = {transform_responses(mobility_.hx), transform_responses(mobility_.hy),
-                                   transform_responses(mobility_.hz)};
+    std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>> responses;
+    responses[LoadDirection::down] = {transform_responses(mobility_.hx), transform_responses(mobility_.hy),
+                                      transform_responses(mobility_.hz)};
+    for (const auto& [direction, of] : mobility_.horizontal)
+      responses[direction] = {transform_responses(of.hx), transform_responses(of.hy),
+                              transform_responses(of.hz)};
     Eigen::MatrixXcd sums[3];
     for (Eigen::MatrixXcd& sum : sums) sum = Eigen::MatrixXcd::Zero(count_, nr);
     for_each_parallel(nr, threads_, [&](Index r) {
@@ -213,8 +225,9 @@ class Superposition {
                           "receiver \"{}\" and footprint {} need",
                           std::abs(dx), std::abs(dy), receiver.position[2], receiver.name, j + 1));
         }
-        const double signs[3] = {dx < 0 ? -1.0 : 1.0, dy < 0 ? -1.0 : 1.0, 1.0};
-        for (int c = 0; c < 3; ++c)
+        const std::array<double, 3> signs = symmetry_signs(f.direction, dx, dy);
+        const std::array<Eigen::MatrixXcd, 3>& h = responses.at(f.direction);
+        for (std::size_t c = 0; c < 3; ++c)
           sums[c].col(r).array() += signs[c] * h[c].col(p).array() * forces_.col(j).array();
       }
     });
@@ -227,9 +240,15 @@ class Superposition {
   }
 
   void add_footprints() {
-    const Eigen::MatrixXcd h = transform_responses(mobility_.mean);
+    // Of each direction: mean displacement along x, along y and downward.
+    std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>> means;
+    means[LoadDirection::down][2] = transform_responses(mobility_.mean);
+    for (const auto& [direction, of] : mobility_.horizontal)
+      means[direction] = {transform_responses(of.mean_x), transform_responses(of.mean_y),
+                          transform_responses(of.mean)};
     const std::optional<EvenRow> row = find_even_row(loads_.footprints);
-    motion_.footprint_displacement = transform_back(row ? sum_even_row(h, *row) : sum_pairs(h));
+    motion_.footprint_displacement = transform_back(
+        row ? sum_even_row(means.at(row->direction)[component(row->direction)], *row) : sum_pairs(means));
   }
 
   // Index of the response of footprint i to footprint j; throws where it is missing.
@@ -246,18 +265,25 @@ class Superposition {
     return index;
   }
 
-  // Displacements of the footprints, pair by pair.
-  Eigen::MatrixXcd sum_pairs(const Eigen::MatrixXcd& h) const {
+  // Displacements of the footprints, each along its load, pair by pair.
+  Eigen::MatrixXcd sum_pairs(const std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>>& means) const {
     const Finder<2> finder(mobility_.shifts);
     Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count_, forces_.cols());
     for_each_parallel(forces_.cols(), threads_, [&](Index i) {
-      for (Index j = 0; j < forces_.cols(); ++j)
-        sums.col(i).array() += h.col(find_response(finder, i, j)).array() * forces_.col(j).array();
+      for (Index j = 0; j < forces_.cols(); ++j) {
+        const Footprint *to = &loads_.footprints[static_cast<std::size_t>(i)],
+                        *from = &loads_.footprints[static_cast<std::size_t>(j)];
+        if (from->direction == LoadDirection::down) std::swap(to, from);  // reciprocity
+        const std::size_t c = component(to->direction);
+        const double sign = symmetry_signs(from->direction, to->x - from->x, to->y - from->y)[c];
+        sums.col(i).array() += sign * means.at(from->direction)[c].col(find_response(finder, i, j)).array() *
+                               forces_.col(j).array();
+      }
     });
     return sums;
   }
 
-  // The same along an even row: a convolution over the footprints, by FFT at every frequency.
+  // The same along an even row, all in one direction: a convolution over the footprints, by FFT at every frequency.
   Eigen::MatrixXcd sum_even_row(const Eigen::MatrixXcd& h, const EvenRow& row) const {
     const Finder<2> finder(mobility_.shifts);
     const Index nl = forces_.cols(), circle = compute_fast_length(2 * nl - 1);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "soil/layered/mobility.hpp"
+#include "soil/mobility.hpp"
 #include "soil/site.hpp"
 #include "soil/surface_loads.hpp"
 #include "soil/wave_solver.hpp"

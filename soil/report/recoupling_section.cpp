@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "easydyn/error.hpp"
@@ -39,12 +40,12 @@ std::optional<Comparison> compare_displacements(const ResultReader& track, const
   const MatrixXd soil = ground.read_matrix("/footprint/displacement");
   const VectorXd taper = ground.read_vector("/footprint/taper");
 
-  // the footprint's sleeper is the one at the same x
+  // the footprint's sleeper is the one at the same x; loads of other sources follow those of the track
   std::vector<Index> of_track, of_soil;
   for (Index f = 0; f < footprints.size(); ++f) {
     Index nearest = 0;
     const double gap = (sleepers.array() - footprints(f)).abs().minCoeff(&nearest);
-    if (gap < 0.01) {
+    if (gap < 0.01 && std::find(of_track.begin(), of_track.end(), nearest) == of_track.end()) {
       of_track.push_back(nearest);
       of_soil.push_back(f);
     }

@@ -51,5 +51,15 @@ TEST(Taper, FadesTheLoadsOutAtBothEnds) {
   EXPECT_EQ(compute_taper({{1, 0, 1, 1}, {1, 2, 1, 1}}, 4), Eigen::VectorXd::Ones(2));
 }
 
+TEST(Taper, LeavesWhatStandsBesideTheTrackAlone) {
+  std::vector<Footprint> track;
+  for (int i = -20; i <= 20; ++i) track.push_back({i * 0.5, 0, 0.3, 2.5});
+  const Eigen::VectorXd alone = compute_taper(track, 4);
+  track.push_back({.x = 30, .y = 6, .length = 1, .width = 1, .source = 1});
+  const Eigen::VectorXd taper = compute_taper(track, 4);
+  EXPECT_EQ(taper.head(41), alone);
+  EXPECT_EQ(taper(41), 1);
+}
+
 }  // namespace
 }  // namespace easydyn::soil

@@ -128,6 +128,25 @@ TEST_F(SoilProgram, ComputesVibrationsAndReportsThem) {
   EXPECT_THAT(testing::read_whole_file(folder_ / "out/report.html"), HasSubstr("</html>"));
 }
 
+TEST_F(SoilProgram, TakesSeveralFilesOfLoads) {
+  folder_.write("site.toml", tiny_site);
+  const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();
+  const std::string one = (folder_ / "one").string(), two = (folder_ / "two").string();
+  for (const std::string command : {"run --double", "predict"}) {
+    const Outcome first = call(command + " " + site + " " + loads + " --output " + one);
+    ASSERT_EQ(first.status, 0) << first.err;
+    const Outcome second = call(command + " " + site + " " + loads + " " + loads + " --output " + two);
+    ASSERT_EQ(second.status, 0) << second.err;
+    const Vibrations a = read_vibrations(folder_ / "one/vibrations.h5");
+    const Vibrations b = read_vibrations(folder_ / "two/vibrations.h5");
+    EXPECT_LT((b.vz - 2 * a.vz).cwiseAbs().maxCoeff(), 1e-9 * a.vz.cwiseAbs().maxCoeff()) << command;
+    EXPECT_EQ(b.footprint_x.size(), 2);
+  }
+  const Outcome missing = call("run " + site + " " + loads + " nowhere.h5 --output " + two);
+  EXPECT_EQ(missing.status, 1);
+  EXPECT_THAT(missing.err, HasSubstr("nowhere.h5"));
+}
+
 TEST_F(SoilProgram, PredictsFromImpulseResponsesAsFromTheSite) {
   folder_.write("site.toml", tiny_site);
   const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();

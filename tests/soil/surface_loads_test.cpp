@@ -64,6 +64,39 @@ TEST(SurfaceLoads, KeepTheirDirections) {
   EXPECT_EQ(read_surface_loads(folder / "b.h5").footprints[1].direction, LoadDirection::down);
 }
 
+TEST(SurfaceLoads, MayActAtPoints) {
+  const TemporaryFolder folder;
+  SurfaceLoads loads = make_loads();
+  loads.footprints[0].length = loads.footprints[0].width = 0;
+  write_surface_loads(folder / "a.h5", loads, {});
+  EXPECT_TRUE(read_surface_loads(folder / "a.h5").footprints[0].is_point());
+}
+
+TEST(SurfaceLoads, OfSeveralFilesActTogether) {
+  const TemporaryFolder folder;
+  const SurfaceLoads first = make_loads();  // 0.5 to 0.7 s in steps of 0.1 s
+  SurfaceLoads second;                      // 0.55 to 1 s in steps of 0.05 s, linear
+  second.time = Eigen::VectorXd::LinSpaced(10, 0.55, 1.0);
+  second.footprints = {{5, 3, 0, 0, LoadDirection::y}};
+  second.force = 10 * second.time;
+  write_surface_loads(folder / "a.h5", first, {});
+  write_surface_loads(folder / "b.h5", second, {});
+
+  const SurfaceLoads both = read_surface_loads({folder / "a.h5", folder / "b.h5"}, 0.1);
+  ASSERT_EQ(both.time.size(), 11);
+  EXPECT_NEAR((both.time - Eigen::VectorXd::LinSpaced(11, 0.5, 1.0)).cwiseAbs().maxCoeff(), 0, 1e-12);
+  ASSERT_EQ(both.footprints.size(), 3u);
+  EXPECT_EQ(both.footprints[0].source, 0);
+  EXPECT_EQ(both.footprints[2].source, 1);
+  EXPECT_EQ(both.footprints[2].direction, LoadDirection::y);
+  EXPECT_NEAR(both.force(2, 0), 3, 1e-9);     // 0.6 s: a sample
+  EXPECT_NEAR(both.force(10, 1), -6, 1e-9);   // held after its end
+  EXPECT_NEAR(both.force(0, 2), 2.75, 1e-9);  // 0.5 s: half-way in over the 0.1 s before 0.55 s
+  EXPECT_NEAR(both.force(6, 2), 8, 1e-9);
+  // One file stays as it is.
+  EXPECT_EQ(read_surface_loads(std::vector<std::filesystem::path>{folder / "a.h5"}).force, first.force);
+}
+
 TEST(SurfaceLoads, AcceptTimesThatAreUniformUpToRounding) {
   const TemporaryFolder folder;
   SurfaceLoads loads = make_loads();
@@ -86,7 +119,7 @@ TEST(SurfaceLoads, NameTheFault) {
               HasSubstr("at least 2"));
   EXPECT_THAT(fault_of([](SurfaceLoads& loads) { loads.footprints.clear(); }), HasSubstr("no footprint"));
   EXPECT_THAT(fault_of([](SurfaceLoads& loads) { loads.footprints[0].width = 0; }),
-              HasSubstr("\"/size\": row 0 is 0.3 m x 0 m, must be > 0"));
+              HasSubstr("\"/size\": row 0 is 0.3 m x 0 m, must be > 0 (or both 0: a point)"));
   EXPECT_THAT(fault_of([](SurfaceLoads& loads) { loads.footprints[1].x = INFINITY; }),
               HasSubstr("\"/position\": row 1 is (inf, 0.2) m, must be finite"));
 }

@@ -87,6 +87,24 @@ TEST(WaveSolver, GivesTheSameMotionInTheHalfModel) {
   }
 }
 
+TEST(WaveSolver, TakesAPointLoadAsTheLimitOfSmallFootprints) {
+  Site site = small_site();
+  site.receivers.push_back({"mirror", {-0.7, -3.2, -0.8}});  // and margin: as in the half model
+  site.margin = 0.5;
+  SolverOptions options = small_options();
+  options.double_precision = true;
+  const GroundMotion point = WaveSolver(site, pulse({{0.2, 0, 0, 0}}), options).run();
+  ASSERT_GT(point.vz.cwiseAbs().maxCoeff(), 0);
+  // The shape functions change over 1 mm of an element of some metres by 1e-3; their mean over it by its square.
+  const GroundMotion small = WaveSolver(site, pulse({{0.2, 0, 1e-3, 1e-3}}), options).run();
+  for (const auto record : {&GroundMotion::vx, &GroundMotion::vz})
+    EXPECT_LT(relative_difference(small.*record, point.*record), 1e-3);
+  options.half_model = false;
+  const GroundMotion full = WaveSolver(site, pulse({{0.2, 0, 0, 0}}), options).run();
+  for (const auto record : {&GroundMotion::vx, &GroundMotion::vy, &GroundMotion::vz})
+    EXPECT_LT(relative_difference(point.*record, full.*record), 1e-10);
+}
+
 TEST(WaveSolver, IsReciprocal) {
   // Mean displacement of footprint 2 under a load on 1 = that of 1 under the same load on 2.
   for (const bool double_precision : {true, false}) {
