@@ -51,7 +51,7 @@ TEST(FiniteElements, AgreeWithTheLayeredHalfSpaceOnADampedSite) {
 }
 
 TEST(FiniteElements, AgreeWithTheLayeredHalfSpaceUnderLoadsOfAllDirections) {
-  // The same ground, one footprint along x, one along y and one down, each with its own time. As above 1 %, of the whole
+  // The same ground, one footprint along x, one along y and one down, each with its own time. Full model. As above 1 % (measured 0.2), of the whole
   // motion at the receiver; footprints to 2 %: this mesh resolves waves, not the stress under 1 m, and is stiffer by that.
   Site site;
   for (const double cs : {150.0, 300.0}) {
