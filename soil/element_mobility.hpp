@@ -34,7 +34,7 @@ struct ElementMobilityOptions {
 class ElementMobility {
  public:
   /// @throws ModelError if a block ends along x or is not symmetric about y = 0, footprints beside blocks lie off y = 0,
-  ///         footprints differ, a value is out of range or the fields do not fit in memory
+  ///         footprints differ or are loaded horizontally, a value is out of range or the fields do not fit in memory
   ElementMobility(const Site& site, const std::vector<Footprint>& footprints,
                   const ElementMobilityOptions& options = {});
 

@@ -12,8 +12,7 @@ namespace easydyn::soil {
 ///   Jn(x) = sqrt(2 / (pi x)) (P_n(x) cos x_n - Q_n(x) sin x_n),
 ///
 /// P_n and x Q_n by Chebyshev series in 1 / x^2, cos and sin by Taylor's series after taking off multiples of pi.
-/// The coefficients come from the C library's j0, j1, y0, y1 at the first call. Vectorised: about 3 ns a pair where
-/// these take 60 (AVX-512).
+/// The coefficients come from the C library's j0, j1, y0, y1 at the first call. Vectorised.
 /// Form: M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 9.2.5 to 9.2.10.
 /// @param x  ascending
 void update_bessel(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::Ref<Eigen::VectorXd> J0,
