@@ -9,15 +9,23 @@
 //   triad_bytes_per_second  that bandwidth, stores counted once
 //
 // On a shared machine compare roofline_fraction, not times.
+//
+// train_superposition: 401 sleepers, 5 receivers and 5 s of train up to 80 Hz on a layered ground, from the site and the
+// loads to the ground motion (soil/layered).
+//
+//   cpu_seconds         processor time of all threads
+//   mobility_seconds    of the time, that of the impulse responses; superposition_seconds the rest
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <ctime>
 #include <thread>
 #include <vector>
 
+#include "soil/layered/superposition.hpp"
 #include "soil/relaxation.hpp"
 #include "soil/wave_engine.hpp"
 
@@ -132,6 +140,59 @@ void triad(benchmark::State& state) {
       benchmark::Counter(Triad::get().bytes(), benchmark::Counter::kIsIterationInvariantRate);
 }
 
+/// 5 m of 150 m/s on 300 m/s, receivers beside the middle of 240 m of track.
+Site make_site() {
+  Site site;
+  site.layers = {{"soft", 5, 1800, 150, 300, 0.03, ""}, {"stiff", 0, 1900, 300, 600, 0.03, ""}};
+  for (const double y : {4, 8, 16, 24, 32}) site.receivers.push_back({"", {0, y, 0}});
+  site.highest_frequency = 80;
+  site.damping_frequency = 30;
+  site.taper_length = 0;
+  site.duration = 5;
+  return site;
+}
+
+/// Four axles, 50 kN each, at 40 m/s with some roughness, on 401 sleepers; 5 s at 500 Hz.
+SurfaceLoads make_train() {
+  SurfaceLoads loads;
+  for (int j = 0; j < 401; ++j) loads.footprints.push_back({0.6 * j - 120, 0, 0.3, 2.5});
+  loads.time = Eigen::VectorXd::LinSpaced(2501, 0, 5);
+  loads.force.resize(2501, 401);
+  for (Eigen::Index j = 0; j < 401; ++j) {
+    for (Eigen::Index i = 0; i < 2501; ++i) {
+      double force = 0;
+      for (const double axle : {0.0, 2.5, 15.0, 17.5}) {
+        const double t = loads.time(i), place = (40 * t - 100 + axle - loads.footprints[j].x) / 0.7;
+        force += 2e4 * (1 + 0.2 * std::sin(150 * t + axle)) * std::exp(-place * place);
+      }
+      loads.force(i, j) = force;
+    }
+  }
+  return loads;
+}
+
+void train_superposition(benchmark::State& state) {
+  const int threads = static_cast<int>(state.range(0));
+  const Site site = make_site();
+  const SurfaceLoads loads = make_train();
+  const double start = cpu_seconds();
+  double mobility_seconds = 0, superposition_seconds = 0;
+  for (auto _ : state) {
+    const auto begin = std::chrono::steady_clock::now();
+    Mobility mobility = list_distances(loads.footprints, site.receivers);
+    update_mobility(LayeredGround(site, GroundDamping::maxwell_body), site.highest_frequency, mobility, 0,
+                    threads);
+    const auto middle = std::chrono::steady_clock::now();
+    benchmark::DoNotOptimize(superpose(mobility, site, loads, {.threads = threads}));
+    mobility_seconds += std::chrono::duration<double>(middle - begin).count();
+    superposition_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();
+  }
+  const double runs = static_cast<double>(state.iterations());
+  state.counters["cpu_seconds"] = (cpu_seconds() - start) / runs;
+  state.counters["mobility_seconds"] = mobility_seconds / runs;
+  state.counters["superposition_seconds"] = superposition_seconds / runs;
+}
+
 void use_threads(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgName("threads")->Arg(1);
   if (std::thread::hardware_concurrency() > 1)
@@ -145,5 +206,6 @@ BENCHMARK_CAPTURE(step_float, degree6, 6, 0)->Name("elastic_step/degree6/float")
 BENCHMARK_CAPTURE(step_double, degree4, 4, 0)->Name("elastic_step/degree4/double")->Apply(use_threads);
 BENCHMARK_CAPTURE(step_float, damped4, 4, 3)->Name("damped_step/degree4/float")->Apply(use_threads);
 BENCHMARK(triad)->Apply(use_threads);
+BENCHMARK(train_superposition)->Apply(use_threads);
 
 }  // namespace

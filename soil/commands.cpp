@@ -5,7 +5,9 @@
 #include <system_error>
 
 #include "easydyn/error.hpp"
+#include "soil/layered/layered_prediction.hpp"
 #include "soil/site.hpp"
+#include "soil/stop_signal.hpp"
 
 namespace easydyn::soil {
 
@@ -31,6 +33,59 @@ bool set_aside(const fs::path& result) {
         fmt::format("{}: cannot be renamed to {}, {}", result.string(), previous.string(), error.message()));
   }
   return true;
+}
+
+void add_element_options(CLI::App& command, SolverOptions& options) {
+  command.add_option("-j,--threads", options.threads, "Threads; 0: one per core, fewer for a small model")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->capture_default_str();
+  command.add_option("--degree", options.degree, "Polynomial degree of the elements, 3 to 6")
+      ->check(CLI::Range(3, 6).description(""))
+      ->capture_default_str();
+  command.add_flag("--double", options.double_precision, "Fields in double precision (slower, for checks)");
+  command
+      .add_option("--crossover", options.crossover_frequency,
+                  "Frequency [Hz] below which the motion is computed on a larger, coarser lattice, for less "
+                  "reflection from the edge of the model; 0: none")
+      ->check(CLI::Range(0.0, 1e3).description(""))
+      ->capture_default_str();
+}
+
+DampingModel find_damping_model(const std::string& name) {
+  if (name == "none") return DampingModel::none;
+  if (name == "stiffness") return DampingModel::stiffness_proportional;
+  if (name == "constant") return DampingModel::constant_ratio;
+  throw InputError(
+      fmt::format("damping = {}, must be constant, stiffness or none for finite elements", name));
+}
+
+RunControl make_control(const fs::path& checkpoint) {
+  RunControl control;
+  control.checkpoint = checkpoint;
+  control.is_stop_wanted = [] { return StopSignal::number() != 0; };
+  control.warn = [](const std::string& sentence) { fmt::print(stderr, "soil: warning: {}\n", sentence); };
+  return control;
+}
+
+int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on) {
+  const StopSignal signal;
+  try {
+    run();
+    return 0;
+  } catch (const RunStopped& stopped) {
+    fmt::print(stderr, "soil: {}: {}\nTo go on: {}\n", StopSignal::name(), stopped.what(), command_to_go_on);
+    return 128 + StopSignal::number();  // as a shell says it
+  }
+}
+
+void print_comparison(const Vibrations& vibrations) {
+  fmt::print("\n{:<20} {:>12} {:>12} {:>12}   (difference from the layered half-space, L2 of v_z)\n",
+             "receiver", "PPV z", "whole", "above 2 Hz");
+  fmt::print("{:<20} {:>12} {:>12} {:>12}\n", "", "[mm/s]", "[%]", "[%]");
+  for (const MotionDifference& d : compare_with_semi_analytical(vibrations)) {
+    fmt::print("{:<20} {:>12.4g} {:>12.3g} {:>12.3g}\n", d.receiver, 1e3 * d.ppv_z[1], 100 * d.l2[2],
+               100 * d.dynamic_l2_z);
+  }
 }
 
 fs::path prepare_result(const fs::path& folder) {

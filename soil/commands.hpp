@@ -8,10 +8,15 @@
 #include <string>
 #include <vector>
 
+#include "soil/run_control.hpp"
+#include "soil/vibrations.hpp"
+#include "soil/wave_solver.hpp"
+
 namespace easydyn::soil {
 
 /// A command: options on the command line, and what to do with them.
-using Action = std::function<void(const std::string& command_line)>;
+/// @returns the exit status
+using Action = std::function<int(const std::string& command_line)>;
 
 Action add_mobility_command(CLI::App& app);
 Action add_predict_command(CLI::App& app);
@@ -22,6 +27,17 @@ void make_folder(const std::filesystem::path& folder);
 /// @returns whether there was one  @throws InputError if that is not possible
 bool set_aside(const std::filesystem::path& result);
 
+/// Options that all runs of the finite elements have: threads, degree, precision, crossover.
+void add_element_options(CLI::App& command, SolverOptions& options);
+/// Of the option --damping: constant, stiffness or none. @throws InputError for another name
+DampingModel find_damping_model(const std::string& name);
+/// A run with this checkpoint that SIGINT and SIGTERM stop, and whose warnings go to standard error.
+RunControl make_control(const std::filesystem::path& checkpoint);
+/// What `run` does, with an end before the end on SIGINT and SIGTERM. @returns the exit status
+int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on);
+/// The semi-analytical motion beside a prediction as a table.
+void print_comparison(const Vibrations& vibrations);
+
 /// Makes the folder and renames the `vibrations.h5` of an earlier run, so that it does not look like this run's.
 /// @returns path of the result to come  @throws InputError if that is not possible
 std::filesystem::path prepare_result(const std::filesystem::path& folder);
@@ -30,7 +46,7 @@ std::filesystem::path prepare_result(const std::filesystem::path& folder);
 std::string join_names(const std::vector<std::filesystem::path>& files);
 
 /// Warnings on standard error about values of the site that look like a wrong unit.
-void warn_of_unusual_values(const std::filesystem::path& path, const struct Site& site);
+void warn_of_unusual_values(const std::filesystem::path& path, const Site& site);
 
 inline const char* const result_convention =
     "SI units; x along the track, y to the left, z up; footprints downward";

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -20,7 +19,6 @@
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
-#include "soil/stop_signal.hpp"
 #include "soil/toml_table.hpp"
 
 namespace easydyn::soil {
@@ -66,6 +64,7 @@ struct RunArguments {
   bool verify = false;
   double checkpoint_every = 10;  // [min]
   bool restart = false;
+  double snapshot_step = 0;  // [s]
   SolverOptions options;
 };
 
@@ -81,13 +80,7 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->required()
       ->type_name("DIR");
   command.add_flag("-n,--dry-run", run.dry_run, "Print mesh, memory, steps and expected time, and stop");
-  command
-      .add_option("-j,--threads", run.options.threads, "Threads; 0: one per core, fewer for a small model")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->capture_default_str();
-  command.add_option("--degree", run.options.degree, "Polynomial degree of the elements, 3 to 6")
-      ->check(CLI::Range(3, 6).description(""))
-      ->capture_default_str();
+  add_element_options(command, run.options);
   command
       .add_option("--damping", run.damping,
                   "constant: the ratio of the site file at all frequencies; stiffness: in proportion to "
@@ -95,16 +88,8 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->check(CLI::IsMember({"constant", "stiffness", "none"}).description(""))
       ->capture_default_str()
       ->type_name("MODEL");
-  command.add_flag("--double", run.options.double_precision,
-                   "Fields in double precision (slower, for checks)");
   command.add_flag("--quarter-model", run.options.quarter_model,
                    "Only x >= 0 and y >= 0 (one load, at the origin)");
-  command
-      .add_option("--crossover", run.options.crossover_frequency,
-                  "Frequency [Hz] below which the motion is computed on a larger, coarser lattice, for less "
-                  "reflection from the edge of the model; 0: none")
-      ->check(CLI::Range(0.0, 1e3).description(""))
-      ->capture_default_str();
   command.add_flag("--full-model", run.full_model,
                    "Both sides of the track (loads that are not symmetric about y = 0)");
   command
@@ -114,18 +99,16 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->capture_default_str()
       ->type_name("MINUTES");
   command.add_flag("--restart", run.restart, "Go on from the checkpoint in the output folder");
+  command
+      .add_option(
+          "--snapshot-step", run.snapshot_step,
+          "Pictures of the surface and of the section x = 0 at every so many seconds, beside those that "
+          "the site file asks for; 0: none")
+      ->check(CLI::Range(0.0, 1e3).description(""))
+      ->capture_default_str()
+      ->type_name("SECONDS");
   command.add_flag("--verify", run.verify,
                    "Add the semi-analytical solution of the layered half-space to result and report");
-}
-
-void print_comparison(const Vibrations& vibrations) {
-  fmt::print("\n{:<20} {:>12} {:>12} {:>12}   (difference from the layered half-space, L2 of v_z)\n",
-             "receiver", "PPV z", "whole", "above 2 Hz");
-  fmt::print("{:<20} {:>12} {:>12} {:>12}\n", "", "[mm/s]", "[%]", "[%]");
-  for (const MotionDifference& d : compare_with_semi_analytical(vibrations)) {
-    fmt::print("{:<20} {:>12.4g} {:>12.3g} {:>12.3g}\n", d.receiver, 1e3 * d.ppv_z[1], 100 * d.l2[2],
-               100 * d.dynamic_l2_z);
-  }
 }
 
 // Of a run, and of its part below a crossover frequency.
@@ -134,14 +117,21 @@ std::vector<fs::path> checkpoints_of(const fs::path& folder) {
   return {checkpoint, low_checkpoint_of(checkpoint)};
 }
 
-RunControl make_control(const RunArguments& arguments) {
-  RunControl control;
-  control.checkpoint = arguments.output / "checkpoint.bin";
+// The surface and a section across the track, unless the site file asks for pictures of these names.
+void add_snapshots(Site& site, double step) {
+  if (step == 0) return;
+  for (const auto& [name, axis] : {std::pair("surface", 2), std::pair("section", 0)}) {
+    const bool is_there = std::any_of(site.snapshots.begin(), site.snapshots.end(),
+                                      [&](const Snapshot& snapshot) { return snapshot.name == name; });
+    if (!is_there) site.snapshots.push_back({.name = name, .axis = axis, .step = step});
+  }
+}
+
+RunControl make_run_control(const RunArguments& arguments) {
+  RunControl control = make_control(arguments.output / "checkpoint.bin");
   control.checkpoint_interval = 60 * arguments.checkpoint_every;
   control.restart = arguments.restart;
   control.snapshots = arguments.output / "snapshots";
-  control.is_stop_wanted = [] { return StopSignal::number() != 0; };
-  control.warn = [](const std::string& sentence) { fmt::print(stderr, "soil: warning: {}\n", sentence); };
   return control;
 }
 
@@ -160,14 +150,11 @@ void run(RunArguments& arguments, const std::string& command_line) {
           (arguments.output / "checkpoint.bin").string());
     }
   }
-  const Site site = read_site(arguments.site);
+  Site site = read_site(arguments.site);
+  add_snapshots(site, arguments.snapshot_step);
   warn_of_unusual_values(arguments.site, site);
   const SurfaceLoads loads = read_surface_loads(arguments.loads);
-  const std::map<std::string, DampingModel> damping_models{
-      {"constant", DampingModel::constant_ratio},
-      {"stiffness", DampingModel::stiffness_proportional},
-      {"none", DampingModel::none}};
-  arguments.options.damping = damping_models.at(arguments.damping);
+  arguments.options.damping = find_damping_model(arguments.damping);
   arguments.options.half_model = !arguments.full_model;
   WaveSolver solver = [&] {
     try {
@@ -177,7 +164,7 @@ void run(RunArguments& arguments, const std::string& command_line) {
           fmt::format("{}, {}: {}", arguments.site.string(), join_names(arguments.loads), error.what()));
     }
   }();
-  const RunControl control = make_control(arguments);
+  const RunControl control = make_run_control(arguments);
   print_run_summary(stdout, site, loads, solver);
   print_file_summary(stdout, solver, control);
   if (arguments.dry_run) {
@@ -185,10 +172,7 @@ void run(RunArguments& arguments, const std::string& command_line) {
   }
   std::optional<SemiAnalyticalMotion> semi_analytical;
   if (arguments.verify) {  // first: what does not fit is refused in seconds
-    const std::map<std::string, GroundDamping> dampings{{"constant", GroundDamping::maxwell_body},
-                                                        {"stiffness", GroundDamping::stiffness_proportional},
-                                                        {"none", GroundDamping::none}};
-    semi_analytical = compute_semi_analytical_motion(site, loads, dampings.at(arguments.damping),
+    semi_analytical = compute_semi_analytical_motion(site, loads, find_ground_damping(arguments.damping),
                                                      arguments.options.threads);
   }
   if (!arguments.restart) set_aside(control.snapshots);
@@ -202,19 +186,6 @@ void run(RunArguments& arguments, const std::string& command_line) {
   print_indicators(stdout, vibrations);
   if (arguments.verify) print_comparison(vibrations);
   fmt::print("\n{}\n", result.string());
-}
-
-// As run(), with an end before the end on SIGINT and SIGTERM. Returns the exit status.
-int run_stoppable(RunArguments& arguments, const std::string& command_line) {
-  const StopSignal signal;
-  try {
-    run(arguments, command_line);
-    return 0;
-  } catch (const RunStopped& stopped) {
-    fmt::print(stderr, "soil: {}: {}\nTo go on: {}{}\n", StopSignal::name(), stopped.what(), command_line,
-               arguments.restart ? "" : " --restart");
-    return 128 + StopSignal::number();  // as a shell says it
-  }
 }
 
 void add_report_command(CLI::App& app, fs::path& folder) {
@@ -264,16 +235,15 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  const std::string command_line = results::join_command_line(argc, argv);
   try {
     if (app.got_subcommand("run")) {
-      return run_stoppable(arguments, results::join_command_line(argc, argv));
-    } else if (app.got_subcommand("mobility")) {
-      mobility(results::join_command_line(argc, argv));
-    } else if (app.got_subcommand("predict")) {
-      predict(results::join_command_line(argc, argv));
-    } else {
-      write_report(report_folder);
+      return run_stoppable([&] { run(arguments, command_line); },
+                           command_line + (arguments.restart ? "" : " --restart"));
     }
+    if (app.got_subcommand("mobility")) return mobility(command_line);
+    if (app.got_subcommand("predict")) return predict(command_line);
+    write_report(report_folder);
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "soil: {}\n", error.what());

@@ -7,7 +7,10 @@
 #include "easydyn/error.hpp"
 #include "easydyn/results/progress.hpp"
 #include "soil/commands.hpp"
+#include "soil/element_mobility.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_identity.hpp"
+#include "soil/prediction.hpp"
 #include "soil/site_file.hpp"
 
 namespace easydyn::soil {
@@ -16,14 +19,23 @@ namespace {
 namespace fs = std::filesystem;
 
 const char* const footer = R"(
-Example:
-  soil mobility examples/sites/tram.toml --loads results/tram/surface_loads.h5 --output results/tram/mobility.h5
-  soil predict results/tram/mobility.h5 results/tram/surface_loads.h5 --output results/tram
+Examples:
+  soil mobility examples/sites/tram.toml --loads results/tram/surface_loads.h5 --method elements
+  soil predict examples/sites/tram.mobility.h5 results/tram/surface_loads.h5 --output results/tram
 
-The layers of a site are the same everywhere along x and y: the response to any footprint is that to one footprint,
-shifted. mobility.h5 (docs/formats.md) holds the response to one at all distances that the loads need, and lies beside
-the site file unless --output says otherwise. Every train on footprints of the same size and spacing can then be
-predicted in about a second.)";
+Where the ground does not vary along the track, the response to any footprint is that to one footprint, shifted. The
+file (docs/formats.md) holds the response to one at all distances that loads and receivers need, and lies beside the
+site file unless --output says otherwise. Every train on footprints of the same size and spacing can then be predicted in
+seconds.
+
+Methods:
+  layered           the semi-analytical layered half-space: seconds; layers only
+  elements          one run of a quarter model by finite elements: minutes to hours (--dry-run says how long); also with
+                    blocks that run along the whole track, the same on both sides
+
+A file that is there and still holds is left as it is; it may cover more distances than needed. --force computes it
+anew. A run that was stopped goes on when the same command is given again.
+Exit status: as that of soil run.)";
 
 struct Arguments {
   fs::path site, output;
@@ -31,7 +43,11 @@ struct Arguments {
   std::string method = "layered", damping = "constant";
   std::vector<double> footprint;  // length, width
   double spacing = 0.6, window = 0;
-  int count = 1, threads = 0;
+  int count = 1;
+  bool dry_run = false, force = false;
+  SolverOptions options;
+
+  bool has_elements() const { return method == "elements"; }
 };
 
 // Footprints of a track around x = 0.
@@ -50,6 +66,55 @@ std::vector<Footprint> make_footprints(const Arguments& arguments) {
   return footprints;
 }
 
+// Why the file must be computed; empty if it holds.
+std::string find_reason(const fs::path& file, const std::vector<std::string>& identity,
+                        const Mobility& needed, double window) {
+  StoredMobility stored;
+  try {
+    stored = read_mobility(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  if (stored.identity.empty()) return "it is of an earlier version of the program";
+  if (const std::string difference = find_difference(stored.identity, identity); !difference.empty())
+    return difference;
+  const Mobility& m = stored.mobility;
+  const double covered = m.step * static_cast<double>(m.hz.rows() - m.before);
+  if (covered < window) return fmt::format("responses of {} s there, {} s here", covered, window);
+  return find_missing(m, needed);
+}
+
+// A checkpoint of the same run is gone on with.
+StoredMobility compute_by_elements(ElementMobility& mobility, RunControl control,
+                                   const fs::path& checkpoint) {
+  std::unique_ptr<results::Progress> progress;
+  control.progress = [&, first = true](double fraction) mutable {
+    if (!progress) progress = std::make_unique<results::Progress>("waves");
+    if (!first || fraction == 0) progress->update(fraction);
+    first = false;
+  };
+  control.restart = fs::exists(checkpoint);
+  StoredMobility stored = [&] {
+    try {
+      return mobility.compute(control);
+    } catch (const InputError& error) {
+      if (!control.restart) throw;
+      fmt::print(stderr, "soil: warning: {}; this run starts anew\n", error.what());
+      control.restart = false;
+      return mobility.compute(control);
+    }
+  }();
+  progress->finish();
+  return stored;
+}
+
+void print_mobility(const StoredMobility& stored) {
+  const Mobility& m = stored.mobility;
+  fmt::print("method     {}\nfootprint  {} m x {} m\n", stored.method, m.length, m.width);
+  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints\n",
+             m.step * static_cast<double>(m.hz.rows() - m.before), m.places.size(), m.shifts.size());
+}
+
 void run(const Arguments& arguments, const std::string& command_line) {
   const auto start = std::chrono::steady_clock::now();
   const Site site = read_site(arguments.site);
@@ -57,20 +122,54 @@ void run(const Arguments& arguments, const std::string& command_line) {
   const std::vector<Footprint> footprints = make_footprints(arguments);
   fs::path output = arguments.output;
   if (output.empty()) output = fs::path(arguments.site).replace_extension(".mobility.h5");
-  const StoredMobility stored = compute_mobility(site, footprints, find_ground_damping(arguments.damping),
-                                                 arguments.window, arguments.threads);
+  ElementMobilityOptions options{.solver = arguments.options, .window = arguments.window};
+  if (arguments.has_elements()) options.solver.damping = find_damping_model(arguments.damping);
+  const GroundDamping damping = find_ground_damping(arguments.damping);
+
+  if (fs::exists(output) && !arguments.force) {
+    const std::string reason = find_reason(
+        output, describe_responses(site, damping, arguments.has_elements() ? &options.solver : nullptr),
+        list_distances(footprints, site.receivers), arguments.window);
+    if (reason.empty()) {
+      fmt::print("{}: up to date\n", output.string());
+      return;
+    }
+    fmt::print("{}: does not hold any more: {}\n", output.string(), reason);
+  }
+
+  StoredMobility stored;
+  fs::path checkpoint;
+  if (arguments.has_elements()) {
+    ElementMobility mobility(site, footprints, options);
+    checkpoint = fs::path(output).replace_extension(".checkpoint.bin");
+    const RunControl control = make_control(checkpoint);
+    print_run_summary(stdout, mobility.model(), mobility.pulse(), mobility.solver());
+    print_file_summary(stdout, mobility.solver(), control);
+    if (arguments.dry_run) return;
+    stored = compute_by_elements(mobility, control, checkpoint);
+    fmt::print("at the end {:.2g} of the largest response is left\n", mobility.rest());
+  } else {
+    if (arguments.dry_run) return;
+    stored = compute_mobility(site, footprints, damping, arguments.window, arguments.options.threads);
+  }
+  set_aside(output);
   write_mobility(output, stored,
                  {.program = "soil", .command = command_line, .convention = result_convention});
-  const Mobility& m = stored.mobility;
-  fmt::print("site       {}: {} layer{}, up to {} Hz\n", site.name, site.layers.size(),
-             site.layers.size() == 1 ? "" : "s", site.highest_frequency);
-  fmt::print("footprint  {} m x {} m\n", m.length, m.width);
-  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints\n",
-             m.step * static_cast<double>(m.hz.rows() - m.before), m.places.size(), m.shifts.size());
+  std::error_code ignored;
+  for (const fs::path& file : {checkpoint, low_checkpoint_of(checkpoint)}) fs::remove(file, ignored);
+  print_mobility(stored);
   fmt::print("needed     {}\n\n{}\n",
              results::format_duration(
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()),
              output.string());
+}
+
+int run_naming_the_site(const Arguments& arguments, const std::string& command_line) {
+  try {
+    return run_stoppable([&] { run(arguments, command_line); }, command_line);
+  } catch (const ModelError& error) {  // site and footprints do not fit: say which file
+    throw ModelError(fmt::format("{}: {}", arguments.site.string(), error.what()));
+  }
 }
 
 }  // namespace
@@ -96,15 +195,15 @@ Action add_mobility_command(CLI::App& app) {
       ->capture_default_str();
   command.add_option("-o,--output", arguments->output, "File to write; default: SITE.mobility.h5")
       ->type_name("FILE");
-  command.add_option("--method", arguments->method, "layered: the semi-analytical layered half-space")
-      ->check(CLI::IsMember({"layered"}).description(""))
+  command.add_option("--method", arguments->method, "layered or elements, see below")
+      ->check(CLI::IsMember({"layered", "elements"}).description(""))
       ->capture_default_str()
       ->type_name("METHOD");
   command
-      .add_option(
-          "--damping", arguments->damping,
-          "constant: as the finite elements; constant-q: the same ratio at all frequencies; stiffness: in "
-          "proportion to frequency; none: elastic ground")
+      .add_option("--damping", arguments->damping,
+                  "constant: the ratio of the site file, nearly at all frequencies; constant-q: exactly "
+                  "(layered only); "
+                  "stiffness: in proportion to frequency; none: elastic ground")
       ->check(CLI::IsMember({"constant", "constant-q", "stiffness", "none"}).description(""))
       ->capture_default_str()
       ->type_name("MODEL");
@@ -112,10 +211,13 @@ Action add_mobility_command(CLI::App& app) {
       .add_option("--window", arguments->window, "Length of the responses [s]; 0: chosen by the distances")
       ->check(CLI::NonNegativeNumber.description(""))
       ->capture_default_str();
-  command.add_option("-j,--threads", arguments->threads, "Threads; 0: one per core")
-      ->check(CLI::Range(0, 1024).description(""))
-      ->capture_default_str();
-  return [arguments](const std::string& command_line) { run(*arguments, command_line); };
+  add_element_options(command, arguments->options);
+  command.add_flag(
+      "-n,--dry-run", arguments->dry_run,
+      "Say whether the file holds; if not, print mesh, memory, steps and expected time, and stop");
+  command.add_flag("--force", arguments->force, "Compute even if the file holds");
+  return
+      [arguments](const std::string& command_line) { return run_naming_the_site(*arguments, command_line); };
 }
 
 }  // namespace easydyn::soil

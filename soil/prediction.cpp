@@ -88,24 +88,13 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
       standard.dashpots);
 }
 
-void add_solver(std::vector<Parameter>& rows, const Site& site, WaveSolver& solver) {
-  add_settings(rows, site, true);
-  add_options(rows, site, solver.options());
-  const RunSummary summary = solver.compute_summary();
-  const Lattice& lattice = solver.lattice();
-  rows.push_back({"boundary", "sponge elements on each outer side (three quarters of it below)",
-                  static_cast<double>(lattice.sponge_y[1]), "1",
-                  solver.options().sponge_elements < 0 ? "computed" : "option"});
-  const auto add = [&](const char* group, const char* name, double value, const char* unit) {
-    rows.push_back({group, name, value, unit, "computed"});
-  };
-  add("mesh", "extent along x, with the sponge", lattice.x.back() - lattice.x.front(), "m");
-  add("mesh", "extent along y, with the sponge", lattice.y.back() - lattice.y.front(), "m");
-  add("mesh", "depth, with the sponge", lattice.z.back() - lattice.z.front(), "m");
-  add("mesh", "elements", static_cast<double>(summary.elements), "1");
-  add("mesh", "degrees of freedom", static_cast<double>(summary.dofs), "1");
-  add("mesh", "time step", summary.time_step, "s");
-  add("mesh", "steps", static_cast<double>(summary.steps), "1");
+void add_setting(std::vector<Parameter>& rows, const Site& site, const char* name, const char* unit,
+                 const char* key, double Site::*value) {
+  const Site standard;
+  const char* const origin = site.given.contains(key)         ? "site file"
+                             : site.*value == standard.*value ? "default"
+                                                              : "caller";
+  rows.push_back({"solver", name, site.*value, unit, origin});
 }
 
 /// The layer that alone makes the time step less than half of what the others allow; -1: none.
@@ -137,21 +126,33 @@ WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const Solver
   return WaveSolver(site, limited, options);
 }
 
-void add_settings(std::vector<Parameter>& rows, const Site& site, bool has_mesh) {
-  const Site standard;
-  const auto add = [&](const char* name, const char* unit, const char* key, double Site::*value) {
-    const char* const origin = site.given.contains(key)         ? "site file"
-                               : site.*value == standard.*value ? "default"
-                                                                : "caller";
-    rows.push_back({"solver", name, site.*value, unit, origin});
+void add_settings(std::vector<Parameter>& rows, const Site& site) {
+  add_setting(rows, site, "highest frequency", "Hz", "highest_frequency", &Site::highest_frequency);
+  add_setting(rows, site, "frequency of the damping ratios and wave speeds", "Hz", "damping_frequency",
+              &Site::damping_frequency);
+  add_setting(rows, site, "length over which the loads fade out", "m", "taper_length", &Site::taper_length);
+}
+
+void add_mesh(std::vector<Parameter>& rows, const Site& site, WaveSolver& solver) {
+  add_setting(rows, site, "points per shortest wavelength", "1", "points_per_wavelength",
+              &Site::points_per_wavelength);
+  add_setting(rows, site, "undamped ground around loads and receivers", "m", "margin", &Site::margin);
+  add_options(rows, site, solver.options());
+  const RunSummary summary = solver.compute_summary();
+  const Lattice& lattice = solver.lattice();
+  rows.push_back({"boundary", "sponge elements on each outer side (three quarters of it below)",
+                  static_cast<double>(lattice.sponge_y[1]), "1",
+                  solver.options().sponge_elements < 0 ? "computed" : "option"});
+  const auto add = [&](const char* group, const char* name, double value, const char* unit) {
+    rows.push_back({group, name, value, unit, "computed"});
   };
-  add("highest frequency", "Hz", "highest_frequency", &Site::highest_frequency);
-  add("frequency of the damping ratios and wave speeds", "Hz", "damping_frequency", &Site::damping_frequency);
-  if (has_mesh) {
-    add("points per shortest wavelength", "1", "points_per_wavelength", &Site::points_per_wavelength);
-    add("undamped ground around loads and receivers", "m", "margin", &Site::margin);
-  }
-  add("length over which the loads fade out", "m", "taper_length", &Site::taper_length);
+  add("mesh", "extent along x, with the sponge", lattice.x.back() - lattice.x.front(), "m");
+  add("mesh", "extent along y, with the sponge", lattice.y.back() - lattice.y.front(), "m");
+  add("mesh", "depth, with the sponge", lattice.z.back() - lattice.z.front(), "m");
+  add("mesh", "elements", static_cast<double>(summary.elements), "1");
+  add("mesh", "degrees of freedom", static_cast<double>(summary.dofs), "1");
+  add("mesh", "time step", summary.time_step, "s");
+  add("mesh", "steps", static_cast<double>(summary.steps), "1");
 }
 
 Vibrations describe_prediction(const Site& site, const SurfaceLoads& loads) {
@@ -180,7 +181,9 @@ void set_motion(Vibrations& v, GroundMotion motion) {
 Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveSolver& solver, std::FILE* out,
                               const RunControl& control) {
   Vibrations v = describe_prediction(site, loads);
-  add_solver(v.parameters, site, solver);
+  v.method = "finite elements, all loads";
+  add_settings(v.parameters, site);
+  add_mesh(v.parameters, site, solver);
   std::unique_ptr<results::Progress> progress;
   if (out) {
     progress = std::make_unique<results::Progress>("waves", out);

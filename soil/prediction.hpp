@@ -25,8 +25,11 @@ Vibrations predict_vibrations(const Site& site, const SurfaceLoads& loads, WaveS
 /// Everything but the motion and what depends on the solver: receivers, footprints, site.
 Vibrations describe_prediction(const Site& site, const SurfaceLoads& loads);
 
-/// Rows of the table of parameters for the settings of the site file; `has_mesh`: with those of a mesh.
-void add_settings(std::vector<Parameter>& rows, const Site& site, bool has_mesh);
+/// Rows of the table of parameters for the settings of the site file, but for those of the mesh.
+void add_settings(std::vector<Parameter>& rows, const Site& site);
+
+/// Rows of the table of parameters for solver, boundary, mesh and time step.
+void add_mesh(std::vector<Parameter>& rows, const Site& site, WaveSolver& solver);
 
 /// Takes the motion over and draws up the indicators.
 void set_motion(Vibrations& vibrations, GroundMotion motion);

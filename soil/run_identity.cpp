@@ -34,17 +34,27 @@ std::string checksum_of(const Site& site) {
   return fmt::format("{:016x}", sum.value());
 }
 
-std::string checksum_of(const SurfaceLoads& loads) {
-  Checksum sum;
-  const auto add = [&](const auto& values) {
-    sum.add(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
-  };
-  add(loads.time);
-  for (const Footprint& f : loads.footprints)
+void add(Checksum& sum, const std::vector<Footprint>& footprints) {
+  for (const Footprint& f : footprints)
     for (const double value :
          {f.x, f.y, f.length, f.width, static_cast<double>(f.direction), static_cast<double>(f.source)})
       sum.add_value(value);
-  add(loads.force);
+}
+
+std::string checksum_of(const std::vector<Footprint>& footprints) {
+  Checksum sum;
+  add(sum, footprints);
+  return fmt::format("{:016x}", sum.value());
+}
+
+std::string checksum_of(const SurfaceLoads& loads) {
+  Checksum sum;
+  const auto add_values = [&](const auto& values) {
+    sum.add(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
+  };
+  add_values(loads.time);
+  add(sum, loads.footprints);
+  add_values(loads.force);
   return fmt::format("{:016x}", sum.value());
 }
 
@@ -74,7 +84,8 @@ RunIdentity describe_run(const Site& site, const SurfaceLoads& loads, const Solv
           {"option sponge_strength", number(options.sponge_strength)},
           {"option dashpots", yes(options.dashpots)},
           {"option quarter-model", yes(options.quarter_model)},
-          {"option crossover_frequency", number(options.crossover_frequency)}};
+          {"option crossover_frequency", number(options.crossover_frequency)},
+          {"observed footprints", checksum_of(options.observed)}};
 }
 
 std::string find_difference(const RunIdentity& before, const RunIdentity& now) {

@@ -48,6 +48,23 @@ std::vector<LineWeight> interpolate_line(const GllRule& rule, const std::vector<
   return result;
 }
 
+/// Over a..b; folded back at 0 where the lattice ends there.
+std::vector<LineWeight> integrate_folded(const GllRule& rule, const std::vector<double>& lines, double a,
+                                         double b, bool folds) {
+  if (!folds || (a >= 0 && b >= 0)) return integrate_line(rule, lines, a, b);
+  std::vector<LineWeight> result = integrate_line(rule, lines, std::max(-b, 0.0), -a);
+  if (b > 0)
+    for (const LineWeight& w : integrate_line(rule, lines, 0, b)) result.push_back(w);
+  return result;
+}
+
+void check_range(const char* axis, std::size_t number, double low, double high, std::array<double, 2> range) {
+  if (!(low >= range[0] - 1e-9 && high <= range[1] + 1e-9))
+    throw ModelError(
+        fmt::format("footprint {}: {} = {:.6g}..{:.6g} m, must be in {:.6g}..{:.6g} m, the undamped ground",
+                    number, axis, low, high, range[0], range[1]));
+}
+
 }  // namespace
 
 FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
@@ -70,14 +87,8 @@ FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footpri
           fmt::format("footprint {}: x = {} m, must be 0 in the quarter model", number, footprint.x));
     x0 = 0;
   }
-  const auto check = [&](const char* axis, double low, double high, std::array<double, 2> range) {
-    if (!(low >= range[0] - 1e-9 && high <= range[1] + 1e-9))
-      throw ModelError(
-          fmt::format("footprint {}: {} = {:.6g}..{:.6g} m, must be in {:.6g}..{:.6g} m, the undamped ground",
-                      number, axis, low, high, range[0], range[1]));
-  };
-  check("x", x0, x1, lattice.interior_x());
-  check("y", y0, y1, lattice.interior_y());
+  check_range("x", number, x0, x1, lattice.interior_x());
+  check_range("y", number, y0, y1, lattice.interior_y());
 
   const GllRule rule(lattice.degree);
   const int top = lattice.nz() * lattice.degree;
@@ -99,6 +110,26 @@ FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footpri
       result.force.push_back({wx.node, wy.node, top, wx.weight * wy.weight / area});
       result.mean.push_back({wx.node, wy.node, top, wx.weight * wy.weight / part});
     }
+  return result;
+}
+
+std::vector<NodeWeight> compute_mean_weights(const Lattice& lattice, const Footprint& f, std::size_t number) {
+  const double x[2] = {f.x - f.length / 2, f.x + f.length / 2}, y[2] = {f.y - f.width / 2, f.y + f.width / 2};
+  // The ends and their images.
+  const auto check = [&](const char* axis, const double(&ends)[2], bool folds, std::array<double, 2> range) {
+    if (folds)
+      check_range(axis, number, 0, std::max(std::abs(ends[0]), std::abs(ends[1])), range);
+    else
+      check_range(axis, number, ends[0], ends[1], range);
+  };
+  check("x", x, lattice.quarter_model, lattice.interior_x());
+  check("y", y, lattice.half_model, lattice.interior_y());
+  const GllRule rule(lattice.degree);
+  const int top = lattice.nz() * lattice.degree;
+  std::vector<NodeWeight> result;
+  for (const LineWeight& wy : integrate_folded(rule, lattice.y, y[0], y[1], lattice.half_model))
+    for (const LineWeight& wx : integrate_folded(rule, lattice.x, x[0], x[1], lattice.quarter_model))
+      result.push_back({wx.node, wy.node, top, wx.weight * wy.weight / (f.length * f.width)});
   return result;
 }
 

@@ -24,6 +24,12 @@ struct FootprintWeights {
 FootprintWeights compute_footprint_weights(const Lattice& lattice, const Footprint& footprint,
                                            std::size_t number);
 
+/// Weights of the mean over a footprint anywhere, loaded or not, of motion that is symmetric about the planes of the half
+/// and the quarter model: what lies beyond them counts as its mirror image.
+/// @throws ModelError as above
+std::vector<NodeWeight> compute_mean_weights(const Lattice& lattice, const Footprint& footprint,
+                                             std::size_t number);
+
 /// Shape functions at a receiver: weights that add up to 1. In the half model a receiver at y < 0, in the quarter
 /// model also one at x < 0, takes the values of its mirror image: symmetric motion changes the sign of the
 /// component across the plane, antisymmetric motion that of the others.

@@ -174,6 +174,7 @@ void write_vibrations(const std::filesystem::path& path, const Vibrations& v,
   if (v.semi_analytical) write_semi_analytical(file, *v.semi_analytical);
   file.write_text("/parameters", visu::to_json(v.parameters),
                   "JSON array of {group, name, value, unit, source}");
+  if (!v.method.empty()) file.write_text("/method", v.method, "how the motion was computed");
   file.write_text("/site", v.site_text, "the site file, as read");
   file.commit();
 }
@@ -192,6 +193,7 @@ Vibrations read_vibrations(const std::filesystem::path& path) {
   v.highest_frequency = reader.read_number_attribute("highest_frequency");
   v.parameters = visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   v.site_text = reader.read_text("/site");
+  if (reader.has("/method")) v.method = reader.read_text("/method");
   const std::vector<std::string> names = reader.read_names("/receivers/names");
   std::vector<std::string> groups(names.size());  // files of earlier versions have none
   if (reader.has("/receivers/groups")) groups = reader.read_names("/receivers/groups");

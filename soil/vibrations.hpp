@@ -31,6 +31,7 @@ struct Vibrations {
   Eigen::VectorXd footprint_taper;         ///< nl: factor on each load
   double highest_frequency = 0;            ///< [Hz]; nothing above it is claimed (roll-off to 1.25 x)
   std::vector<Parameter> parameters;       ///< site, mesh, boundary, time step
+  std::string method;                      ///< how the motion was computed, e.g. "finite elements, all loads"
   std::string site_text;                   ///< the site file, as read
   std::optional<SemiAnalyticalMotion> semi_analytical;  ///< for comparison
 };

@@ -215,6 +215,7 @@ struct WaveSolver::Impl {
   LoadHistory history;
   std::vector<FootprintWeights> footprints;
   std::vector<LoadDirection> directions;
+  std::vector<std::vector<NodeWeight>> observed;
   bool odd_x = false, odd_y = false;
   std::vector<ReceiverWeights> receivers;
   Eigen::VectorXd taper, forces;
@@ -269,7 +270,13 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
           : static_cast<int>(std::lround(8 * site.points_per_wavelength / 5.5 * 4 / options.degree));
   lattice_options.far_frequency = far_frequency;
   lattice_options.sponge_growth = options.sponge_growth;
-  lattice = make_lattice(site, loads.footprints, lattice_options);
+  Site extended = site;  // to the farthest corner of what is observed
+  for (const Footprint& f : options.observed) {
+    const double sx = f.x < 0 ? -1 : 1, sy = f.y < 0 ? -1 : 1;
+    extended.receivers.push_back(
+        {"observed footprint", {f.x + sx * f.length / 2, f.y + sy * f.width / 2, 0}});
+  }
+  lattice = make_lattice(extended, loads.footprints, lattice_options);
   for (std::size_t f = 0; f < loads.footprints.size(); ++f) {
     footprints.push_back(compute_footprint_weights(lattice, loads.footprints[f], f + 1));
     directions.push_back(loads.footprints[f].direction);
@@ -280,6 +287,14 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
 
   odd_x = is_odd(loads.footprints, options, 0);
   odd_y = is_odd(loads.footprints, options, 1);
+  if (!options.observed.empty() && (odd_x || odd_y))
+    throw ModelError("solver: footprints are observed under a horizontal load, must be under vertical ones");
+  for (const Footprint& f : options.observed)
+    if (!(f.length > 0 && f.width > 0))
+      throw ModelError(fmt::format("solver: an observed footprint is {} m x {} m, must be a rectangle", f.length,
+                                   f.width));
+  for (std::size_t f = 0; f < options.observed.size(); ++f)
+    observed.push_back(compute_mean_weights(lattice, options.observed[f], loads.footprints.size() + f + 1));
 
   const Rheology rheology = make_rheology(site, options.damping);
   const int memories = static_cast<int>(rheology.rates.size());
@@ -344,8 +359,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     throw ModelError(fmt::format("site: duration = {} s, must be at least ten output steps of {} s", duration,
                                  output_step));
   // Histories of receivers and footprints, held twice while they are written.
-  const double histories = 2 * 8 * duration / output_step *
-                           static_cast<double>(3 * site.receivers.size() + loads.footprints.size());
+  const double histories =
+      2 * 8 * duration / output_step *
+      static_cast<double>(3 * site.receivers.size() + loads.footprints.size() + observed.size());
   if (!(memory + histories <= limit))
     throw ModelError(
         fmt::format("site: duration = {} s gives histories of {:.3g} GB, fields and histories must be at "
@@ -393,6 +409,8 @@ void WaveSolver::Impl::check_nodes_are_in_the_ground() {
   };
   for (std::size_t f = 0; f < footprints.size(); ++f)
     check(footprints[f].force, fmt::format("footprint {}", f + 1));
+  for (std::size_t f = 0; f < observed.size(); ++f)
+    check(observed[f], fmt::format("footprint {}", footprints.size() + f + 1));
   for (std::size_t r = 0; r < receivers.size(); ++r)
     check(receivers[r].nodes, fmt::format("receiver \"{}\"", site.receivers[r].name));
 }
@@ -412,7 +430,7 @@ void WaveSolver::Impl::update_surface_forces(double t) {
 
 GroundMotion WaveSolver::Impl::make_motion() const {
   const Eigen::Index nt = outputs, nr = static_cast<Eigen::Index>(receivers.size()),
-                     nl = static_cast<Eigen::Index>(footprints.size());
+                     nl = static_cast<Eigen::Index>(footprints.size() + observed.size());
   GroundMotion motion;
   motion.taper = taper;
   motion.time = Eigen::VectorXd::Zero(nt);
@@ -479,7 +497,7 @@ double WaveSolver::Impl::compute_checkpoint_size() {
     engine.visit_state([&](const void*, std::size_t field) { bytes += static_cast<double>(field); });
   });
   return bytes + 8.0 * static_cast<double>(outputs) *
-                     static_cast<double>(2 + 3 * receivers.size() + footprints.size());
+                     static_cast<double>(2 + 3 * receivers.size() + footprints.size() + observed.size());
 }
 
 template <class T>
@@ -538,6 +556,9 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
               return engine.displacement(component, n.X, n.Y, n.Z);
             });
       }
+      for (std::size_t f = 0; f < observed.size(); ++f)
+        motion.footprint_displacement(row, static_cast<Eigen::Index>(footprints.size() + f)) =
+            -weigh(observed[f], [&](const NodeWeight& n) { return engine.displacement(2, n.X, n.Y, n.Z); });
     }
     if (row >= 0 && takes_snapshots) snapshots->begin(row, displacement, velocity);
     update_surface_forces(time_of(step));

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "soil/lattice.hpp"
 #include "soil/run_control.hpp"
@@ -44,6 +45,9 @@ struct SolverOptions {
   double crossover_frequency = 0;
   bool dashpots = true;     ///< viscous dashpots (Stacey) and far-field springs on the outer faces
   double memory_limit = 0;  ///< [byte]; 0: 0.8 of the memory of the machine
+  /// Footprints without a load whose mean displacement, downward, is recorded after that of the loaded ones; anywhere,
+  /// all loads vertical.
+  std::vector<Footprint> observed = {};
 };
 
 /// What a run will cost, known before it starts.
@@ -63,7 +67,8 @@ struct RunSummary {
 struct GroundMotion {
   Eigen::VectorXd time;                    ///< nt [s]
   Eigen::MatrixXd vx, vy, vz;              ///< nt x nr [m/s], z up
-  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, along its load
+  Eigen::MatrixXd footprint_displacement;  ///< nt x nl [m], mean over each footprint, along its load; then
+                                           ///< those of SolverOptions::observed
   Eigen::VectorXd taper;                   ///< nl: factor on each load
   Eigen::VectorXd energy;                  ///< nt [J] kinetic + u . K w / 2 (w below; strain energy where
                                            ///< undamped), of the half or the quarter model if one; empty

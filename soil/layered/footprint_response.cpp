@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,12 +11,12 @@
 #include "soil/layered/gauss_rule.hpp"
 #include "soil/layered/radial_response.hpp"
 #include "soil/layered/static_half_space.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
 
 using Eigen::Index;
-using SparseRows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int points = 6;  // of a cell
 
@@ -57,29 +56,30 @@ double outside(double x, double size) {
   return std::max(0.0, std::abs(x) - size / 2);
 }
 
-// One row of the weights on the nodes of the radial grid.
-class Row {
+// Weights of the nodes of the radial grid, of which a place needs a few panels in a row.
+class NodeWeights {
  public:
-  explicit Row(Index size) : values_(Eigen::VectorXd::Zero(size)) {}
+  explicit NodeWeights(Index size) : values_(Eigen::VectorXd::Zero(size)) {}
   void add(const RadialGrid::Weights& weights, double factor) {
-    values_.segment<RadialGrid::points_per_panel>(weights.first) += factor * weights.values;
+    constexpr Index n = RadialGrid::points_per_panel;
+    values_.segment<n>(weights.first) += factor * weights.values;
+    begin_ = begin_ == end_ ? weights.first : std::min(begin_, weights.first);
+    end_ = std::max(end_, weights.first + n);
   }
-  void move_to(std::vector<Eigen::Triplet<double>>& entries, Index row) {
-    for (Index i = 0; i < values_.size(); ++i) {
-      if (values_(i) != 0) entries.emplace_back(static_cast<int>(row), static_cast<int>(i), values_(i));
-    }
-    values_.setZero();
+  // Weighted sum of the rows of `functions`; forgets the weights.
+  Eigen::VectorXd sum_up(const Eigen::MatrixXd& functions) {
+    const Index count = end_ - begin_;
+    const Eigen::VectorXd sum =
+        functions.middleRows(begin_, count).transpose() * values_.segment(begin_, count);
+    values_.segment(begin_, count).setZero();
+    begin_ = end_ = 0;
+    return sum;
   }
 
  private:
   Eigen::VectorXd values_;
+  Index begin_ = 0, end_ = 0;  // of the nodes with a weight
 };
-
-SparseRows make_rows(Index rows, Index columns, const std::vector<Eigen::Triplet<double>>& entries) {
-  SparseRows matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
 
 void check_request(const FootprintRequest& request) {
   const std::string object = "footprint response";
@@ -93,10 +93,8 @@ void check_request(const FootprintRequest& request) {
     require(request.source_depth == 0, object, "source depth", request.source_depth, "m",
             "0 for a load on a rectangle");
   }
-  if (is_point || request.direction != LoadDirection::down) {
-    if (!request.means.empty()) {
-      throw ModelError(object + ": means over footprints are for vertical loads on a rectangle");
-    }
+  if (is_point && !request.means.empty()) {
+    throw ModelError(object + ": means over footprints are for loads on a rectangle");
   }
   for (const auto& point : request.points) {
     require_finite(object, "x", point[0], "m");
@@ -122,6 +120,7 @@ class Response {
     if (request_.direction == LoadDirection::y) {
       std::swap(request_.length, request_.width);
       for (auto& point : request_.points) point = {point[1], -point[0], point[2]};
+      for (Footprint& mean : request_.means) mean = {mean.y, -mean.x, mean.width, mean.length};
     }
     nu_ = ground.layers().front().poisson_ratio();
     is_point_ = request_.length == 0;
@@ -148,10 +147,14 @@ class Response {
     FootprintResponse out;
     for (Eigen::MatrixXcd* u : {&out.ux, &out.uy, &out.uz})
       u->resize(nf, static_cast<Index>(request_.points.size()));
+    const bool down = request_.direction == LoadDirection::down;
     out.mean.resize(nf, static_cast<Index>(request_.means.size()));
+    if (!down) {
+      out.mean_x.resize(nf, out.mean.cols());
+      out.mean_y.resize(nf, out.mean.cols());
+    }
     if (nf == 0 || depths_.empty()) return out;
     const RadialGrid grid(smallest_ / 4, largest_, largest_wavenumber_);
-    const bool down = request_.direction == LoadDirection::down;
     const std::vector<RadialResponse> radial =
         compute_radial_responses(ground_,
                                  {.source_depth = request_.source_depth,
@@ -171,6 +174,8 @@ class Response {
     if (request_.direction == LoadDirection::y) {  // turn back
       out.ux.swap(out.uy);
       out.ux *= -1;
+      out.mean_x.swap(out.mean_y);
+      out.mean_x *= -1;
     }
     return out;
   }
@@ -248,73 +253,113 @@ class Response {
       if (std::abs(request_.points[p][2]) == depths_[d]) members.push_back(static_cast<Index>(p));
     }
     const bool down = request_.direction == LoadDirection::down;
-    const auto count = static_cast<Index>(members.size());
-    const Index nodes = grid.nodes().size();
-    Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(count, 3);  // static, times the modulus
-    // Two functions at most make a component.
-    std::array<std::vector<Eigen::Triplet<double>>, 3> entries, entries_sum;
-    Row rows[3] = {Row(nodes), Row(nodes), Row(nodes)}, row_sum(nodes);
-    for (Index m = 0; m < count; ++m) {
-      const auto& point = request_.points[static_cast<std::size_t>(members[static_cast<std::size_t>(m)])];
-      const double depth = std::abs(point[2]);
-      const double smallest = radial.static_part ? 1.0 / 8 : 1e-6;
-      for (const SourcePoint& p : make_source(point[0], point[1], radial.static_part ? 0 : depth, smallest)) {
-        const double dx = point[0] - p.x, dy = point[1] - p.y, r = std::hypot(dx, dy);
-        const double c = r > 0 ? dx / r : 0, s = r > 0 ? dy / r : 0;
-        const RadialGrid::Weights weights = grid.compute_weights(r);
-        if (down) {
-          rows[0].add(weights, p.weight * c);
-          rows[1].add(weights, p.weight * s);
-          rows[2].add(weights, -p.weight);
-        } else {
-          row_sum.add(weights, p.weight);
-          rows[0].add(weights, -p.weight * (c * c - s * s));
-          rows[1].add(weights, -p.weight * 2 * c * s);
-          rows[2].add(weights, p.weight * c);
-        }
-      }
-      for (std::size_t i = 0; i < 3; ++i) rows[i].move_to(entries[i], m);
-      row_sum.move_to(entries_sum[0], m);
-      if (radial.static_part) {
-        const auto u = compute_static(point);
-        fixed.row(m) << u[0], u[1], u[2];
-      }
-    }
-    const std::array<const Eigen::MatrixXd*, 3> functions =
-        down ? std::array{&radial.xz, &radial.xz, &radial.zz}
-             : std::array{&radial.difference, &radial.difference, &radial.zx};
-    const std::array<Eigen::MatrixXcd*, 3> u{&out.ux, &out.uy, &out.uz};
-    for (std::size_t i = 0; i < 3; ++i) {
-      Eigen::MatrixXd sum = make_rows(count, nodes, entries[i]) * *functions[i];
-      if (!down && i == 0) sum += make_rows(count, nodes, entries_sum[0]) * radial.sum;
-      put(sum, fixed.col(static_cast<Index>(i)), members, *u[i]);
-    }
+    const double smallest = radial.static_part ? 1.0 / 8 : 1e-6;
+    for_each_chunk(
+        static_cast<Index>(members.size()), count_threads(request_.threads), [&](Index begin, Index end) {
+          const Index nodes = grid.nodes().size();
+          // Two functions at most make a component.
+          NodeWeights x(nodes), y(nodes), z(nodes), x_sum(nodes);
+          for (Index m = begin; m < end; ++m) {
+            const Index place = members[static_cast<std::size_t>(m)];
+            const auto& point = request_.points[static_cast<std::size_t>(place)];
+            const double depth = radial.static_part ? 0 : std::abs(point[2]);
+            for (const SourcePoint& p : make_source(point[0], point[1], depth, smallest)) {
+              const double dx = point[0] - p.x, dy = point[1] - p.y, r = std::hypot(dx, dy);
+              const double c = r > 0 ? dx / r : 0, s = r > 0 ? dy / r : 0;
+              const RadialGrid::Weights weights = grid.compute_weights(r);
+              if (down) {
+                x.add(weights, p.weight * c);
+                y.add(weights, p.weight * s);
+                z.add(weights, -p.weight);
+              } else {
+                x_sum.add(weights, p.weight);
+                x.add(weights, -p.weight * (c * c - s * s));
+                y.add(weights, -p.weight * 2 * c * s);
+                z.add(weights, p.weight * c);
+              }
+            }
+            const std::array<double, 3> fixed =
+                radial.static_part ? compute_static(point) : std::array<double, 3>{};
+            if (down) {
+              put(x.sum_up(radial.xz), fixed[0], out.ux.col(place));
+              put(y.sum_up(radial.xz), fixed[1], out.uy.col(place));
+              put(z.sum_up(radial.zz), fixed[2], out.uz.col(place));
+            } else {
+              put(x_sum.sum_up(radial.sum) + x.sum_up(radial.difference), fixed[0], out.ux.col(place));
+              put(y.sum_up(radial.difference), fixed[1], out.uy.col(place));
+              put(z.sum_up(radial.zx), fixed[2], out.uz.col(place));
+            }
+          }
+        });
   }
 
   void add_means(const RadialResponse& radial, const RadialGrid& grid, FootprintResponse& out) {
-    const auto count = static_cast<Index>(request_.means.size());
-    const Index nodes = grid.nodes().size();
-    std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd fixed(count);
-    Row row(nodes);
-    std::vector<Index> members;
-    for (Index m = 0; m < count; ++m) {
-      const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
-      const auto along = make_difference_rule(request_.length, mean.length, mean.x,
-                                              outside(mean.y, request_.width + mean.width));
-      const auto across = make_difference_rule(request_.width, mean.width, mean.y,
-                                               outside(mean.x, request_.length + mean.length));
-      for (const WeightedPoint& a : along) {
-        for (const WeightedPoint& b : across) {
-          row.add(grid.compute_weights(std::hypot(a.x, b.x)), a.weight * b.weight);
+    const auto update = [&](Index begin, Index end) {
+      const Index nodes = grid.nodes().size();
+      NodeWeights x(nodes), y(nodes), z(nodes), x_sum(nodes);
+      for (Index m = begin; m < end; ++m) {
+        const Footprint& mean = request_.means[static_cast<std::size_t>(m)];
+        const auto along = make_difference_rule(request_.length, mean.length, mean.x,
+                                                outside(mean.y, request_.width + mean.width));
+        const auto across = make_difference_rule(request_.width, mean.width, mean.y,
+                                                 outside(mean.x, request_.length + mean.length));
+        const bool down = request_.direction == LoadDirection::down;
+        for (const WeightedPoint& a : along) {
+          for (const WeightedPoint& b : across) {
+            const double r = std::hypot(a.x, b.x), weight = a.weight * b.weight;
+            const RadialGrid::Weights weights = grid.compute_weights(r);
+            if (down) {
+              z.add(weights, weight);
+              continue;
+            }
+            const double c = r > 0 ? a.x / r : 0, s = r > 0 ? b.x / r : 0;
+            x_sum.add(weights, weight);
+            x.add(weights, -weight * (c * c - s * s));
+            y.add(weights, -weight * 2 * c * s);
+            z.add(weights, -weight * c);
+          }
         }
+        if (down) {
+          put(z.sum_up(radial.zz),
+              compute_static_rectangle_mean(nu_, request_.length, request_.width, mean.length, mean.width,
+                                            mean.x, mean.y),
+              out.mean.col(m));
+          continue;
+        }
+        const std::array<double, 3> fixed = compute_static_mean(mean);
+        put(x_sum.sum_up(radial.sum) + x.sum_up(radial.difference), fixed[0], out.mean_x.col(m));
+        put(y.sum_up(radial.difference), fixed[1], out.mean_y.col(m));
+        put(z.sum_up(radial.zx), fixed[2], out.mean.col(m));
       }
-      row.move_to(entries, m);
-      fixed(m) = compute_static_rectangle_mean(nu_, request_.length, request_.width, mean.length, mean.width,
-                                               mean.x, mean.y);
-      members.push_back(m);
+    };
+    for_each_chunk(static_cast<Index>(request_.means.size()), count_threads(request_.threads), update);
+  }
+
+  // Static mean over a footprint under a load along x, times the shear modulus: x, y, downward. By Gauss's rule,
+  // near the load in cells that shrink towards the edges, where the displacement has infinite slopes.
+  std::array<double, 3> compute_static_mean(const Footprint& mean) const {
+    static const GaussRule rule(points);
+    const double size = std::max({request_.length, request_.width, mean.length, mean.width});
+    const std::vector<double> edges = std::hypot(mean.x, mean.y) > 5 * size
+                                          ? std::vector<double>{0, 1}
+                                          : std::vector<double>{0,     0.003, 0.03,  0.125, 0.25,  0.375, 0.5,
+                                                                0.625, 0.75,  0.875, 0.97,  0.997, 1};
+    std::vector<WeightedPoint> segment;  // of [-1/2, 1/2]
+    for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
+      const double length = edges[e + 1] - edges[e];
+      for (int i = 0; i < points; ++i)
+        segment.push_back({edges[e] + length / 2 * (1 + rule.points(i)) - 0.5, length / 2 * rule.weights(i)});
     }
-    put(make_rows(count, nodes, entries) * radial.zz, fixed, members, out.mean);
+    std::array<double, 3> u{};
+    for (const WeightedPoint& a : segment) {
+      for (const WeightedPoint& b : segment) {
+        const StaticRectangleResponse s = compute_static_rectangle_response(
+            nu_, request_.length, request_.width, mean.x + a.x * mean.length, mean.y + b.x * mean.width);
+        const double weight = a.weight * b.weight;
+        u = {u[0] + weight * s.xx, u[1] + weight * s.yx, u[2] + weight * s.zx};
+      }
+    }
+    return u;
   }
 
   // Rule for the difference of two places, each uniform in a segment, whose centres are `offset` apart: the
@@ -336,15 +381,10 @@ class Response {
     return sum;
   }
 
-  // From rows of places, columns (real, imaginary) to rows of frequencies; adds the static part.
-  void put(const Eigen::MatrixXd& sum, const Eigen::VectorXd& fixed, const std::vector<Index>& members,
-           Eigen::MatrixXcd& out) const {
-    for (Index i = 0; i < out.rows(); ++i) {
-      for (Index m = 0; m < sum.rows(); ++m) {
-        out(i, members[static_cast<std::size_t>(m)]) =
-            std::complex<double>(sum(m, 2 * i), sum(m, 2 * i + 1)) + fixed(m) * flexibility_(i);
-      }
-    }
+  // From real and imaginary parts, one after the other, to frequencies; adds the static part.
+  void put(const Eigen::VectorXd& parts, double fixed, Eigen::Ref<Eigen::VectorXcd> out) const {
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) = std::complex<double>(parts(2 * i), parts(2 * i + 1)) + fixed * flexibility_(i);
   }
 
   const LayeredGround& ground_;

@@ -16,15 +16,16 @@ struct FootprintRequest {
   double source_depth = 0;       ///< [m] of a point load, >= 0; rectangles lie on the surface
   LoadDirection direction = LoadDirection::down;
   std::vector<std::array<double, 3>> points;  ///< x, y, z [m], z <= 0: displacement there
-  std::vector<Footprint>
-      means;        ///< mean downward displacement over these, for a vertical load on a rectangle
-  int threads = 0;  ///< 0: one per core
+  std::vector<Footprint> means;               ///< mean displacement over these, for a load on a rectangle
+  int threads = 0;                            ///< 0: one per core
 };
 
 /// Frequency responses, one row per frequency.
 struct FootprintResponse {
   Eigen::MatrixXcd ux, uy, uz;  ///< nf x points [m/N], z up
   Eigen::MatrixXcd mean;        ///< nf x means [m/N], downward
+  /// nf x means [m/N] along x and y, of horizontal loads only: those of a vertical one follow by reciprocity.
+  Eigen::MatrixXcd mean_x, mean_y;
 };
 
 /// Response of a layered ground to a load on one footprint at the circular frequencies w (RadialResponse says which,

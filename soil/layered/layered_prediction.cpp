@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
+#include "soil/layered/layered_mobility.hpp"
 #include "soil/layered/superposition.hpp"
-#include "soil/prediction.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/recoupling.hpp"
 
 namespace easydyn::soil {
@@ -34,35 +35,11 @@ StoredMobility compute_mobility(const Site& site, const std::vector<Footprint>& 
   StoredMobility stored;
   stored.site = site;
   stored.damping = damping;
-  stored.method = "layered half-space";
+  stored.method = layered_method;
+  stored.identity = describe_responses(site, damping, nullptr);
   stored.mobility = list_distances(footprints, site.receivers);
   update_mobility(LayeredGround(site, damping), site.highest_frequency, stored.mobility, window, threads);
   return stored;
-}
-
-Vibrations predict_vibrations(const StoredMobility& stored, const SurfaceLoads& loads, int threads) {
-  const Site& site = stored.site;
-  const Mobility& m = stored.mobility;
-  Vibrations v = describe_prediction(site, loads);
-  add_settings(v.parameters, site, false);
-  const auto number = [](GroundDamping damping) {
-    return damping == GroundDamping::none                     ? 0.0
-           : damping == GroundDamping::stiffness_proportional ? 1.0
-           : damping == GroundDamping::maxwell_body           ? 2.0
-                                                              : 3.0;
-  };
-  v.parameters.push_back({"solver", "material damping (0 none, 1 stiffness, 2 constant, 3 constant Q)",
-                          number(stored.damping), "1", "option"});
-  const std::string group = "impulse responses: " + stored.method;
-  v.parameters.push_back({group, "length of the responses",
-                          m.step * static_cast<double>(m.hz.rows() - m.before), "s", "computed"});
-  v.parameters.push_back({group, "step of the responses", m.step, "s", "computed"});
-  v.parameters.push_back(
-      {group, "distances of receivers", static_cast<double>(m.places.size()), "1", "computed"});
-  v.parameters.push_back(
-      {group, "distances of footprints", static_cast<double>(m.shifts.size()), "1", "computed"});
-  set_motion(v, superpose(m, site, loads, {.threads = threads}));
-  return v;
 }
 
 SemiAnalyticalMotion compute_semi_analytical_motion(const Site& site, const SurfaceLoads& loads,

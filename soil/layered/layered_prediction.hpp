@@ -1,6 +1,6 @@
 #pragma once
 
-#include "soil/layered/mobility_file.hpp"
+#include "soil/mobility_file.hpp"
 #include "soil/surface_loads.hpp"
 #include "soil/vibrations.hpp"
 
@@ -11,10 +11,6 @@ namespace easydyn::soil {
 /// @throws ModelError if the footprints differ in size or a value is out of range
 StoredMobility compute_mobility(const Site& site, const std::vector<Footprint>& footprints,
                                 GroundDamping damping, double window = 0, int threads = 0);
-
-/// The same prediction as by finite elements, from impulse responses.
-/// @throws ModelError if the responses lack a distance that the loads need
-Vibrations predict_vibrations(const StoredMobility& stored, const SurfaceLoads& loads, int threads = 0);
 
 /// The semi-analytical motion to compare a prediction with; 24 samples per period of the highest frequency.
 SemiAnalyticalMotion compute_semi_analytical_motion(const Site& site, const SurfaceLoads& loads,

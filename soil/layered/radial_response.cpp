@@ -1,22 +1,19 @@
 #include "soil/layered/radial_response.hpp"
 
 #include <fmt/format.h>
-#include <math.h>  // j0, j1: not in <cmath>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cmath>
-#include <exception>
 #include <limits>
-#include <mutex>
 #include <numbers>
-#include <thread>
 
 #include "easydyn/error.hpp"
+#include "soil/layered/bessel.hpp"
 #include "soil/layered/gauss_rule.hpp"
 #include "soil/layered/static_half_space.hpp"
 #include "soil/layered/wavenumber_response.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -34,30 +31,6 @@ constexpr double cut_phase = 72;     // k r over which the integral ends
 double compute_cut(double k, double K1, double width) {
   const double part = (k - K1) / width;
   return part <= 0 ? 1 : part >= 1 ? 0 : 0.5 * std::erfc(4.2 * (2 * part - 1));
-}
-
-struct BesselPair {
-  double J0, J1;
-};
-
-// J0 and J1 for x >= 0; far out by Hankel's asymptotic series (Abramowitz and Stegun 9.2.5 to 9.2.10), to 1e-15.
-BesselPair compute_bessel(double x) {
-  if (x < 25) return {::j0(x), ::j1(x)};
-  const auto modulate = [x](double mu) {  // P and Q
-    double P = 0, Q = 0, term = 1;
-    for (int m = 0; m < 16; m += 2) {
-      const double sign = m % 4 == 0 ? 1 : -1;
-      P += sign * term;
-      term *= (mu - (2 * m + 1) * (2 * m + 1)) / ((m + 1) * 8 * x);
-      Q += sign * term;
-      term *= (mu - (2 * m + 3) * (2 * m + 3)) / ((m + 2) * 8 * x);
-    }
-    return std::pair{P, Q};
-  };
-  const auto [P0, Q0] = modulate(0);
-  const auto [P1, Q1] = modulate(4);
-  const double c = std::cos(x), s = std::sin(x), scale = 1 / std::sqrt(pi * x);
-  return {scale * (P0 * (c + s) - Q0 * (s - c)), scale * (P1 * (s - c) + Q1 * (s + c))};
 }
 
 // Where poles and branch points lie: wavenumbers lowest ... highest, off the axis by `slope` times k.
@@ -126,27 +99,6 @@ Nodes make_nodes(const Singularities& s, double largest_distance, double depth, 
   return nodes;
 }
 
-// Calls work(i) for i = 0 ... count - 1 on some threads; rethrows the first error.
-template <typename Work>
-void for_each_parallel(Index count, int threads, const Work& work) {
-  std::atomic<Index> next{0};
-  std::exception_ptr error;
-  std::mutex guard;
-  const auto serve = [&] {
-    try {
-      for (Index i = next++; i < count; i = next++) work(i);
-    } catch (...) {
-      const std::lock_guard lock(guard);
-      if (!error) error = std::current_exception();
-    }
-  };
-  std::vector<std::thread> others;
-  for (int t = 1; t < std::min<Index>(threads, count); ++t) others.emplace_back(serve);
-  serve();
-  for (std::thread& thread : others) thread.join();
-  if (error) std::rethrow_exception(error);
-}
-
 // The five transforms at one depth, nodes x (real, imaginary part at each frequency).
 struct Kernels {
   Eigen::MatrixXd zz, xz, sum, difference, zx;
@@ -157,8 +109,7 @@ class Synthesis {
   Synthesis(const LayeredGround& ground, const RadialRequest& request, const RadialGrid& grid,
             const Eigen::VectorXcd& w)
       : ground_(ground), request_(request), grid_(grid), w_(w) {
-    threads_ = request.threads > 0 ? request.threads
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    threads_ = count_threads(request.threads);
     responses_.resize(request.receiver_depths.size());
     const double top_end = ground.layers().front().thickness;
     for (std::size_t d = 0; d < responses_.size(); ++d) {
@@ -254,31 +205,36 @@ class Synthesis {
     const double nearest = std::max(grid_.nodes()(row), request_.smallest);
     const double end = nodes.K1 + cut_phase / nearest;
     const Index count = std::lower_bound(nodes.k.begin(), nodes.k.end(), end) - nodes.k.begin();
-    Eigen::MatrixXd J0(rows, count), J1(rows, count), J2;
-    if (request_.horizontal) J2.resize(rows, count);
+    const auto k = Eigen::Map<const Eigen::VectorXd>(nodes.k.data(), count);
+    // Columns are distances.
+    Eigen::MatrixXd J0 = Eigen::MatrixXd::Zero(count, rows), J1 = J0, J2;
+    if (request_.horizontal) J2 = J0;
     for (Index i = 0; i < rows; ++i) {
-      const double r = grid_.nodes()(row + i);
-      const double width = cut_phase / std::max(r, request_.smallest);
-      for (Index n = 0; n < count; ++n) {
-        const double k = nodes.k[static_cast<std::size_t>(n)], x = k * r;
-        const double cut = compute_cut(k, nodes.K1, width);
-        const BesselPair J = cut == 0 ? BesselPair{0, 0} : compute_bessel(x);
-        J0(i, n) = cut * J.J0;
-        J1(i, n) = cut * J.J1;
-        if (request_.horizontal) J2(i, n) = cut * (x > 1e-3 ? 2 * J.J1 / x - J.J0 : x * x / 8);
+      const double r = grid_.nodes()(row + i), width = cut_phase / std::max(r, request_.smallest);
+      const Index reached = std::lower_bound(k.begin(), k.end(), nodes.K1 + width) - k.begin();
+      const Eigen::VectorXd x = r * k.head(reached);
+      update_bessel(x, J0.col(i).head(reached), J1.col(i).head(reached));
+      for (Index n = 0; request_.horizontal && n < reached; ++n)
+        J2(n, i) = x(n) > 1e-3 ? 2 * J1(n, i) / x(n) - J0(n, i) : x(n) * x(n) / 8;
+      for (Index n = std::upper_bound(k.begin(), k.end(), nodes.K1) - k.begin(); n < reached; ++n) {
+        const double cut = compute_cut(k(n), nodes.K1, width);
+        J0(n, i) *= cut;
+        J1(n, i) *= cut;
+        if (request_.horizontal) J2(n, i) *= cut;
       }
     }
     for (std::size_t d = 0; d < kernels.size(); ++d) {
       RadialResponse& out = responses_[d];
       const Kernels& in = kernels[d];
       if (request_.vertical) {
-        out.zz.block(row, column, rows, columns).noalias() = J0 * in.zz.topRows(count);
-        out.xz.block(row, column, rows, columns).noalias() = J1 * in.xz.topRows(count);
+        out.zz.block(row, column, rows, columns).noalias() = J0.transpose() * in.zz.topRows(count);
+        out.xz.block(row, column, rows, columns).noalias() = J1.transpose() * in.xz.topRows(count);
       }
       if (request_.horizontal) {
-        out.sum.block(row, column, rows, columns).noalias() = J0 * in.sum.topRows(count);
-        out.difference.block(row, column, rows, columns).noalias() = J2 * in.difference.topRows(count);
-        out.zx.block(row, column, rows, columns).noalias() = J1 * in.zx.topRows(count);
+        out.sum.block(row, column, rows, columns).noalias() = J0.transpose() * in.sum.topRows(count);
+        out.difference.block(row, column, rows, columns).noalias() =
+            J2.transpose() * in.difference.topRows(count);
+        out.zx.block(row, column, rows, columns).noalias() = J1.transpose() * in.zx.topRows(count);
       }
     }
   }
@@ -296,7 +252,7 @@ class Synthesis {
 RadialGrid::RadialGrid(double smallest, double largest, double largest_wavenumber) {
   assert(smallest > 0 && largest > smallest);
   const double longest =
-      largest_wavenumber > 0 ? 6 / largest_wavenumber : largest;  // 12 points to 6 rad: 1e-6
+      largest_wavenumber > 0 ? 15 / largest_wavenumber : largest;  // 20 points to 15 rad: 3e-7
   edges_ = {0};
   while (edges_.back() < largest) {
     const double r = edges_.back();
@@ -319,18 +275,22 @@ RadialGrid::Weights RadialGrid::compute_weights(double r) const {
   assert(r >= 0 && r <= edges_.back() * (1 + 1e-12));
   Weights weights{panel * points_per_panel, {}};
   // Barycentric formula for Chebyshev points of the first kind.
-  double sum = 0;
+  static const auto factors = [] {
+    Eigen::Matrix<double, points_per_panel, 1> f;
+    for (int i = 0; i < points_per_panel; ++i)
+      f(i) = (i % 2 ? -1 : 1) * std::sin(pi * (i + 0.5) / points_per_panel);
+    return f;
+  }();
+  const auto distance = (r - nodes_.segment<points_per_panel>(weights.first).array()).eval();
   for (int i = 0; i < points_per_panel; ++i) {
-    const double distance = r - nodes_(weights.first + i);
-    if (distance == 0) {
+    if (distance(i) == 0) {
       weights.values.setZero();
       weights.values(i) = 1;
       return weights;
     }
-    weights.values(i) = (i % 2 ? -1 : 1) * std::sin(pi * (i + 0.5) / points_per_panel) / distance;
-    sum += weights.values(i);
   }
-  weights.values /= sum;
+  weights.values = factors.array() / distance;
+  weights.values /= weights.values.sum();
   return weights;
 }
 

@@ -8,7 +8,7 @@
 
 namespace easydyn::soil {
 
-/// Distances from a point load, graded towards it, with an interpolation between them: panels of 12 Chebyshev
+/// Distances from a point load, graded towards it, with an interpolation between them: panels of 20 Chebyshev
 /// points, as long as their distance from 0 but short enough for the waves.
 class RadialGrid {
  public:
@@ -17,7 +17,7 @@ class RadialGrid {
   /// @param largest_wavenumber  [1/m] of the waves
   RadialGrid(double smallest, double largest, double largest_wavenumber);
 
-  static constexpr int points_per_panel = 12;
+  static constexpr int points_per_panel = 20;
   const Eigen::VectorXd& nodes() const { return nodes_; }
   double largest() const { return edges_.back(); }
   /// First node and weights of the panel that holds r, 0 <= r <= largest().

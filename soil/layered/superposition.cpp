@@ -4,17 +4,18 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <complex>
 #include <map>
 #include <numbers>
-#include <thread>
+#include <numeric>
+#include <optional>
 #include <unsupported/Eigen/FFT>
 
 #include "easydyn/error.hpp"
 #include "soil/frequency_filter.hpp"
 #include "soil/load_history.hpp"
+#include "soil/parallel_loop.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -24,28 +25,23 @@ constexpr double pi = std::numbers::pi;
 constexpr double unload_time = 0.5;  // [s] after the record, over which held loads go back to zero
 constexpr double tolerance = 1e-3;   // [m] to which distances are met
 
-// Columns of `signals`, from row `first` on a circle of `length` samples, as half spectra up to `count` lines.
+// Columns of `signals`, the first `before` rows of them before t = 0, on a circle of `length` samples, as half spectra
+// up to `count` lines.
 Eigen::MatrixXcd transform(const Eigen::MatrixXd& signals, Index before, Index length, Index count,
                            int threads) {
   Eigen::MatrixXcd spectra(count, signals.cols());
-  std::atomic<Index> next{0};
-  const auto serve = [&] {
+  for_each_chunk(signals.cols(), threads, [&](Index begin, Index end) {
     Eigen::FFT<double> fft;
     fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-    Eigen::VectorXd circle(length);
+    Eigen::VectorXd circle = Eigen::VectorXd::Zero(length);
     Eigen::VectorXcd spectrum(length / 2 + 1);
-    for (Index c = next++; c < signals.cols(); c = next++) {
-      circle.setZero();
+    for (Index c = begin; c < end; ++c) {
       circle.head(signals.rows() - before) = signals.col(c).tail(signals.rows() - before);
       circle.tail(before) = signals.col(c).head(before);
       fft.fwd(spectrum.data(), circle.data(), static_cast<int>(length));
       spectra.col(c) = spectrum.head(count);
     }
-  };
-  std::vector<std::thread> others;
-  for (int t = 1; t < threads; ++t) others.emplace_back(serve);
-  serve();
-  for (std::thread& thread : others) thread.join();
+  });
   return spectra;
 }
 
@@ -82,17 +78,54 @@ class Finder {
 
 // The loads at the step of the responses, tapered, from `start` on, back to zero after `end`.
 Eigen::MatrixXd sample_loads(const LoadHistory& history, const Eigen::VectorXd& taper, double start,
-                             double end, double step) {
+                             double end, double step, int threads) {
   const auto samples = static_cast<Index>(std::ceil((end + unload_time - start) / step)) + 1;
-  Eigen::MatrixXd force(samples, taper.size());
-  Eigen::VectorXd at;
-  for (Index i = 0; i < samples; ++i) {
-    const double t = start + step * static_cast<double>(i);
-    history.update_forces(t, at);
-    const double s = std::clamp((t - end) / unload_time, 0.0, 1.0);
-    force.row(i) = (1 - s * s * s * (10 - 15 * s + 6 * s * s)) * at.cwiseProduct(taper).transpose();
+  Eigen::MatrixXd force(taper.size(), samples);
+  for_each_chunk(samples, threads, [&](Index first, Index last) {
+    Eigen::VectorXd at;
+    for (Index i = first; i < last; ++i) {
+      const double t = start + step * static_cast<double>(i);
+      history.update_forces(t, at);
+      const double s = std::clamp((t - end) / unload_time, 0.0, 1.0);
+      force.col(i) = (1 - s * s * s * (10 - 15 * s + 6 * s * s)) * at.cwiseProduct(taper);
+    }
+  });
+  return force.transpose();
+}
+
+// Footprints in a row along x at one spacing, loaded in one direction.
+struct EvenRow {
+  LoadDirection direction = LoadDirection::down;
+  double spacing = 0;            // [m]
+  std::vector<Index> footprint;  // in the order of x
+};
+// Nothing where they are not, or where there is only one.
+std::optional<EvenRow> find_even_row(const std::vector<Footprint>& footprints) {
+  const std::size_t count = footprints.size();
+  if (count < 2) return {};
+  EvenRow row;
+  row.footprint.resize(count);
+  std::iota(row.footprint.begin(), row.footprint.end(), Index{0});
+  const auto at = [&](std::size_t i) -> const Footprint& {
+    return footprints[static_cast<std::size_t>(row.footprint[i])];
+  };
+  std::sort(row.footprint.begin(), row.footprint.end(), [&](Index i, Index j) {
+    return footprints[static_cast<std::size_t>(i)].x < footprints[static_cast<std::size_t>(j)].x;
+  });
+  row.spacing = (at(count - 1).x - at(0).x) / static_cast<double>(count - 1);
+  if (row.spacing <= 2 * tolerance) return {};
+  for (std::size_t i = 0; i < count; ++i) {
+    if (std::abs(at(i).x - at(0).x - row.spacing * static_cast<double>(i)) > tolerance / 2 ||
+        std::abs(at(i).y - at(0).y) > tolerance / 2 || at(i).direction != at(0).direction)
+      return {};
   }
-  return force;
+  row.direction = at(0).direction;
+  return row;
+}
+
+// Place of a direction in x, y, z.
+std::size_t component(LoadDirection direction) {
+  return direction == LoadDirection::x ? 0 : direction == LoadDirection::y ? 1 : 2;
 }
 
 class Superposition {
@@ -105,8 +138,7 @@ class Superposition {
       throw ModelError(fmt::format("superposition: samples_per_period = {}, must be a multiple of 4, > 0",
                                    options.samples_per_period));
     }
-    threads_ = options.threads > 0 ? options.threads
-                                   : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    threads_ = count_threads(options.threads);
     if (mobility.highest_frequency < site.highest_frequency * (1 - 1e-9)) {
       throw ModelError(
           fmt::format("superposition: responses up to {} Hz, must be at least {} Hz, the highest frequency",
@@ -120,15 +152,19 @@ class Superposition {
                         "responses",
                         j + 1, f.length, f.width, mobility.length, mobility.width));
       }
-      if (f.direction != LoadDirection::down) {
+      if (f.direction != LoadDirection::down && !mobility.horizontal.contains(f.direction)) {
         throw ModelError(
-            fmt::format("superposition: footprint {} is loaded horizontally, must be vertically", j + 1));
+            fmt::format("superposition: no responses to a load along {}, which footprint {} needs",
+                        f.direction == LoadDirection::x ? "x" : "y", j + 1));
       }
     }
     SurfaceLoads limited = loads;
     const double step =
         (loads.time(loads.time.size() - 1) - loads.time(0)) / static_cast<double>(loads.time.size() - 1);
-    limited.force = limit_band(loads.force, step, site.highest_frequency);
+    for_each_chunk(loads.force.cols(), threads_, [&](Index begin, Index end) {
+      limited.force.middleCols(begin, end - begin) =
+          limit_band(loads.force.middleCols(begin, end - begin), step, site.highest_frequency);
+    });
     const LoadHistory history(limited, preload_time);
     motion_.taper = compute_taper(loads.footprints, site.taper_length);
 
@@ -145,11 +181,12 @@ class Superposition {
     before_ = preloaded ? static_cast<Index>(std::ceil(preload_time / mobility.step)) : 0;
     const Eigen::MatrixXd force =
         sample_loads(history, motion_.taper, first_ - mobility.step * static_cast<double>(before_),
-                     first_ + duration_, mobility.step);
+                     first_ + duration_, mobility.step, threads_);
     length_ = compute_fast_length(force.rows() + mobility.hz.rows());
+    // The loads hold nothing beyond their roll-off.
     count_ =
-        std::min(length_ / 2, static_cast<Index>(std::ceil(1.75 * mobility.highest_frequency * mobility.step *
-                                                           static_cast<double>(length_))) +
+        std::min(length_ / 2, static_cast<Index>(std::ceil(roll_off * mobility.highest_frequency *
+                                                           mobility.step * static_cast<double>(length_))) +
                                   1);
     forces_ = transform(force, 0, length_, count_, threads_);
   }
@@ -168,11 +205,15 @@ class Superposition {
   void add_receivers() {
     const Finder<3> finder(mobility_.places);
     const auto nr = static_cast<Index>(site_.receivers.size()), nl = forces_.cols();
-    const Eigen::MatrixXcd h[3] = {transform_responses(mobility_.hx), transform_responses(mobility_.hy),
-                                   transform_responses(mobility_.hz)};
+    std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>> responses;
+    responses[LoadDirection::down] = {transform_responses(mobility_.hx), transform_responses(mobility_.hy),
+                                      transform_responses(mobility_.hz)};
+    for (const auto& [direction, of] : mobility_.horizontal)
+      responses[direction] = {transform_responses(of.hx), transform_responses(of.hy),
+                              transform_responses(of.hz)};
     Eigen::MatrixXcd sums[3];
     for (Eigen::MatrixXcd& sum : sums) sum = Eigen::MatrixXcd::Zero(count_, nr);
-    for (Index r = 0; r < nr; ++r) {
+    for_each_parallel(nr, threads_, [&](Index r) {
       const Receiver& receiver = site_.receivers[static_cast<std::size_t>(r)];
       for (Index j = 0; j < nl; ++j) {
         const Footprint& f = loads_.footprints[static_cast<std::size_t>(j)];
@@ -184,11 +225,12 @@ class Superposition {
                           "receiver \"{}\" and footprint {} need",
                           std::abs(dx), std::abs(dy), receiver.position[2], receiver.name, j + 1));
         }
-        const double signs[3] = {dx < 0 ? -1.0 : 1.0, dy < 0 ? -1.0 : 1.0, 1.0};
-        for (int c = 0; c < 3; ++c)
+        const std::array<double, 3> signs = symmetry_signs(f.direction, dx, dy);
+        const std::array<Eigen::MatrixXcd, 3>& h = responses.at(f.direction);
+        for (std::size_t c = 0; c < 3; ++c)
           sums[c].col(r).array() += signs[c] * h[c].col(p).array() * forces_.col(j).array();
       }
-    }
+    });
     const Eigen::VectorXcd rate = Eigen::VectorXcd::NullaryExpr(count_, [&](Index i) {
       return std::complex<double>(
           0, 2 * pi * static_cast<double>(i) / (static_cast<double>(length_) * mobility_.step));
@@ -198,36 +240,76 @@ class Superposition {
   }
 
   void add_footprints() {
-    const Finder<2> finder(mobility_.shifts);
-    const Eigen::MatrixXcd h = transform_responses(mobility_.mean);
-    const Index nl = forces_.cols();
-    Eigen::MatrixXi index(nl, nl);
-    for (Index i = 0; i < nl; ++i) {
-      for (Index j = 0; j < nl; ++j) {
-        const Footprint &to = loads_.footprints[static_cast<std::size_t>(i)],
-                        &from = loads_.footprints[static_cast<std::size_t>(j)];
-        index(i, j) = static_cast<int>(finder.find({to.x - from.x, to.y - from.y}));
-        if (index(i, j) < 0) {
-          throw ModelError(
-              fmt::format("superposition: no response of a footprint at ({:.6g}, {:.6g}) m, which footprints "
-                          "{} and {} need",
-                          std::abs(to.x - from.x), std::abs(to.y - from.y), j + 1, i + 1));
-        }
-      }
+    // Of each direction: mean displacement along x, along y and downward.
+    std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>> means;
+    means[LoadDirection::down][2] = transform_responses(mobility_.mean);
+    for (const auto& [direction, of] : mobility_.horizontal)
+      means[direction] = {transform_responses(of.mean_x), transform_responses(of.mean_y),
+                          transform_responses(of.mean)};
+    const std::optional<EvenRow> row = find_even_row(loads_.footprints);
+    motion_.footprint_displacement = transform_back(
+        row ? sum_even_row(means.at(row->direction)[component(row->direction)], *row) : sum_pairs(means));
+  }
+
+  // Index of the response of footprint i to footprint j; throws where it is missing.
+  Index find_response(const Finder<2>& finder, Index i, Index j) const {
+    const Footprint &to = loads_.footprints[static_cast<std::size_t>(i)],
+                    &from = loads_.footprints[static_cast<std::size_t>(j)];
+    const Index index = finder.find({to.x - from.x, to.y - from.y});
+    if (index < 0) {
+      throw ModelError(
+          fmt::format("superposition: no response of a footprint at ({:.6g}, {:.6g}) m, which footprints "
+                      "{} and {} need",
+                      std::abs(to.x - from.x), std::abs(to.y - from.y), j + 1, i + 1));
     }
-    Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count_, nl);
-    std::atomic<Index> next{0};
-    const auto serve = [&] {
-      for (Index i = next++; i < nl; i = next++) {
-        for (Index j = 0; j < nl; ++j)
-          sums.col(i).array() += h.col(index(i, j)).array() * forces_.col(j).array();
+    return index;
+  }
+
+  // Displacements of the footprints, each along its load, pair by pair.
+  Eigen::MatrixXcd sum_pairs(const std::map<LoadDirection, std::array<Eigen::MatrixXcd, 3>>& means) const {
+    const Finder<2> finder(mobility_.shifts);
+    Eigen::MatrixXcd sums = Eigen::MatrixXcd::Zero(count_, forces_.cols());
+    for_each_parallel(forces_.cols(), threads_, [&](Index i) {
+      for (Index j = 0; j < forces_.cols(); ++j) {
+        const Footprint *to = &loads_.footprints[static_cast<std::size_t>(i)],
+                        *from = &loads_.footprints[static_cast<std::size_t>(j)];
+        if (from->direction == LoadDirection::down) std::swap(to, from);  // reciprocity
+        const std::size_t c = component(to->direction);
+        const double sign = symmetry_signs(from->direction, to->x - from->x, to->y - from->y)[c];
+        sums.col(i).array() += sign * means.at(from->direction)[c].col(find_response(finder, i, j)).array() *
+                               forces_.col(j).array();
       }
-    };
-    std::vector<std::thread> others;
-    for (int t = 1; t < threads_; ++t) others.emplace_back(serve);
-    serve();
-    for (std::thread& thread : others) thread.join();
-    motion_.footprint_displacement = transform_back(sums);
+    });
+    return sums;
+  }
+
+  // The same along an even row, all in one direction: a convolution over the footprints, by FFT at every frequency.
+  Eigen::MatrixXcd sum_even_row(const Eigen::MatrixXcd& h, const EvenRow& row) const {
+    const Finder<2> finder(mobility_.shifts);
+    const Index nl = forces_.cols(), circle = compute_fast_length(2 * nl - 1);
+    std::vector<Index> response;
+    for (const Index footprint : row.footprint)
+      response.push_back(find_response(finder, footprint, row.footprint.front()));
+    const Eigen::MatrixXcd forces = forces_(Eigen::all, row.footprint).transpose();
+    const Eigen::MatrixXcd responses = h(Eigen::all, response).transpose();
+    Eigen::MatrixXcd sums(nl, count_);
+    for_each_chunk(count_, threads_, [&](Index begin, Index end) {
+      Eigen::FFT<double> fft;
+      Eigen::VectorXcd f = Eigen::VectorXcd::Zero(circle), g = f, F(circle), G(circle);
+      for (Index i = begin; i < end; ++i) {
+        f.head(nl) = forces.col(i);
+        g.head(nl) = responses.col(i);
+        g.tail(nl - 1) = responses.col(i).tail(nl - 1).reverse();
+        fft.fwd(F.data(), f.data(), circle);
+        fft.fwd(G.data(), g.data(), circle);
+        F.array() *= G.array();
+        fft.inv(G.data(), F.data(), circle);
+        sums.col(i) = G.head(nl);
+      }
+    });
+    Eigen::MatrixXcd ordered(count_, nl);
+    ordered(Eigen::all, row.footprint) = sums.transpose();
+    return ordered;
   }
 
   Eigen::MatrixXcd transform_responses(const Eigen::MatrixXd& h) const {
@@ -236,18 +318,20 @@ class Superposition {
 
   // To the finer step of the output, without the samples before the loads.
   Eigen::MatrixXd transform_back(const Eigen::MatrixXcd& spectra) const {
-    Eigen::FFT<double> fft;
-    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
     const Index length = refinement_ * length_;
-    Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(length / 2 + 1);
-    Eigen::VectorXd signal(length);
     Eigen::MatrixXd signals(motion_.time.size(), spectra.cols());
-    for (Index c = 0; c < spectra.cols(); ++c) {
-      padded.head(count_) = spectra.col(c);
-      padded(0) = padded(0).real();
-      fft.inv(signal.data(), padded.data(), static_cast<int>(length));
-      signals.col(c) = refinement_ * signal.segment(refinement_ * before_, signals.rows());
-    }
+    for_each_chunk(spectra.cols(), threads_, [&](Index begin, Index end) {
+      Eigen::FFT<double> fft;
+      fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+      Eigen::VectorXcd padded = Eigen::VectorXcd::Zero(length / 2 + 1);
+      Eigen::VectorXd signal(length);
+      for (Index c = begin; c < end; ++c) {
+        padded.head(count_) = spectra.col(c);
+        padded(0) = padded(0).real();
+        fft.inv(signal.data(), padded.data(), static_cast<int>(length));
+        signals.col(c) = refinement_ * signal.segment(refinement_ * before_, signals.rows());
+      }
+    });
     return signals;
   }
 

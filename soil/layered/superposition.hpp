@@ -1,6 +1,6 @@
 #pragma once
 
-#include "soil/layered/mobility.hpp"
+#include "soil/mobility.hpp"
 #include "soil/site.hpp"
 #include "soil/surface_loads.hpp"
 #include "soil/wave_solver.hpp"
@@ -17,7 +17,8 @@ struct SuperpositionOptions {
 ///
 ///   u(x, t) = sum_j taper_j int h(x - x_j, t - s) F_j(s) ds
 ///
-/// by FFT. The loads are treated as by the finite elements: limited by limit_band(), brought in over `preload_time`
+/// by FFT, loads of all directions that the mobility holds. An even row of footprints, all in one direction, costs one
+/// convolution along it; any others cost a product for every pair. The loads are treated as by the finite elements: limited by limit_band(), brought in over `preload_time`
 /// where they start away from zero, held after their end, faded out at both ends of the track by compute_taper(). The
 /// record begins with the loads and ends Site::decay_time after them (or lasts Site::duration).
 /// GroundMotion::energy stays empty.

@@ -177,6 +177,7 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
     facts.insert(facts.begin(), {"Run", track->read_text("/description")});
   if (ground)
     for (auto& fact : origin("Step 2, ground", *ground)) facts.push_back(std::move(fact));
+  if (ground && ground->has("/method")) facts.push_back({"Method", ground->read_text("/method")});
   report.add_facts(std::move(facts));
 
   report.add_section("Key figures");
@@ -191,7 +192,7 @@ void write_prediction_report(const std::filesystem::path& results_dir, const std
                     "are no better than about 10 dB.",
                     visu::short_number_text(ground->read_number_attribute("highest_frequency"))));
   if (track && ground && ground->read_text_attribute("created") < track->read_text_attribute("created"))
-    report.add_note("The ground was computed before this passage: run `soil run` again.");
+    report.add_note("The ground was computed before this passage: run `soil predict` or `soil run` again.");
   if (track) {
     add_animation(report, *track);
     report::add_track_section(report, *track);

@@ -264,6 +264,47 @@ TEST(FootprintResponse, AveragesOverAFootprint) {
   }
 }
 
+TEST(FootprintResponse, AveragesOverAFootprintUnderHorizontalLoads) {
+  // As above, by both directions of the load, and over the loaded rectangle itself, where the slope is infinite at the edges:
+  // 24 points are good to 1e-3 there (1 / n^2).
+  const LayeredGround ground(make_layered_site(), GroundDamping::constant_q);
+  const GaussRule rule(24);
+  for (const LoadDirection direction : {LoadDirection::x, LoadDirection::y}) {
+    FootprintRequest request;
+    request.length = 0.3;
+    request.width = 1.2;
+    request.direction = direction;
+    request.means = {{0.7, -0.4, 0.5, 2}, {0, 0, 0.3, 1.2}};
+    for (const Footprint& mean : request.means) {
+      for (Index i = 0; i < 24; ++i) {
+        for (Index j = 0; j < 24; ++j) {
+          request.points.push_back(
+              {mean.x + mean.length / 2 * rule.points(i), mean.y + mean.width / 2 * rule.points(j), 0});
+        }
+      }
+    }
+    const FootprintResponse u = compute_footprint_response(ground, request, frequencies({5, 50}));
+    for (Index f = 0; f < 2; ++f) {
+      for (Index m = 0; m < 2; ++m) {
+        Complex x = 0, y = 0, z = 0;
+        for (Index i = 0; i < 24; ++i) {
+          for (Index j = 0; j < 24; ++j) {
+            const double weight = rule.weights(i) * rule.weights(j) / 4;
+            const Index p = 24 * (24 * m + i) + j;
+            x += weight * u.ux(f, p);
+            y += weight * u.uy(f, p);
+            z -= weight * u.uz(f, p);
+          }
+        }
+        const double tolerance = (m == 0 ? 1e-6 : 1e-3) * std::max(std::abs(x), std::abs(y));
+        EXPECT_LT(std::abs(u.mean_x(f, m) - x), tolerance);
+        EXPECT_LT(std::abs(u.mean_y(f, m) - y), tolerance);
+        EXPECT_LT(std::abs(u.mean(f, m) - z), tolerance);
+      }
+    }
+  }
+}
+
 TEST(FootprintResponse, GivesTheReferenceCompliances) {
   // Independent computation, homogeneous half-space nu 0.35, loss factor 0.03, footprint 2.5 m x 0.285 m, spacing
   // 0.6 m, uniform pressure, mean displacement; two codes agree on it within 0.2 % (clm fit of the project).

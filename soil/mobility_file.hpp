@@ -1,9 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
+#include "easydyn/parameter.hpp"
 #include "easydyn/results/result_file.hpp"
-#include "soil/layered/mobility.hpp"
+#include "soil/layered/layered_ground.hpp"
+#include "soil/mobility.hpp"
 #include "soil/site.hpp"
 
 namespace easydyn::soil {
@@ -13,7 +17,9 @@ struct StoredMobility {
   Mobility mobility;
   Site site;
   GroundDamping damping = GroundDamping::maxwell_body;
-  std::string method;  ///< how the responses were computed, e.g. "layered half-space"
+  std::string method;                 ///< how the responses were computed, e.g. "layered half-space"
+  std::vector<std::string> identity;  ///< describe_responses(); none in a file of an earlier version
+  std::vector<Parameter> parameters;  ///< of the method: mesh, boundary, time step
 };
 
 /// @throws ModelError if sizes disagree or a value is not finite; InputError if the file cannot be written

@@ -1,4 +1,4 @@
-#include "soil/layered/mobility_file.hpp"
+#include "soil/mobility_file.hpp"
 
 #include <fmt/format.h>
 
@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
+#include "easydyn/visu/parameter_json.hpp"
 #include "soil/site_file.hpp"
 
 namespace easydyn::soil {
@@ -19,6 +20,11 @@ constexpr std::pair<const char*, GroundDamping> dampings[] = {
     {"constant", GroundDamping::maxwell_body},
     {"constant-q", GroundDamping::constant_q}};
 
+// Of the responses to a horizontal load.
+std::string group_of(LoadDirection direction) {
+  return direction == LoadDirection::x ? "/load_x" : "/load_y";
+}
+
 // What is wrong with the sizes, naming the dataset; empty if nothing is.
 std::string find_fault(const Mobility& m) {
   const auto check = [&](const char* name, const Eigen::MatrixXd& values,
@@ -31,6 +37,19 @@ std::string find_fault(const Mobility& m) {
        {check("/response/x", m.hx, m.places.size()), check("/response/y", m.hy, m.places.size()),
         check("/response/z", m.hz, m.places.size()), check("/neighbour/response", m.mean, m.shifts.size())}) {
     if (!fault.empty()) return fault;
+  }
+  for (const auto& [direction, h] : m.horizontal) {
+    const std::string group = group_of(direction);
+    const auto check_of = [&](const char* name, const Eigen::MatrixXd& values, std::size_t columns) {
+      return check((group + name).c_str(), values, columns);
+    };
+    for (const std::string& fault :
+         {check_of("/response/x", h.hx, m.places.size()), check_of("/response/y", h.hy, m.places.size()),
+          check_of("/response/z", h.hz, m.places.size()), check_of("/neighbour/x", h.mean_x, m.shifts.size()),
+          check_of("/neighbour/y", h.mean_y, m.shifts.size()),
+          check_of("/neighbour/response", h.mean, m.shifts.size())}) {
+      if (!fault.empty()) return fault;
+    }
   }
   if (m.hz.rows() < 2 || m.before < 0 || m.before >= m.hz.rows()) {
     return fmt::format("\"/time\" has {} values, {} of them before 0, must have at least 2 and one at 0",
@@ -122,6 +141,31 @@ void write_mobility(const std::filesystem::path& path, const StoredMobility& sto
                     {.units = "m/(N s)",
                      .description = "mean displacement of a footprint there" + band,
                      .frame = "downward"});
+  for (const auto& [direction, h] : m.horizontal) {
+    const std::string group = group_of(direction);
+    const std::string load = fmt::format(
+        " for dx, dy >= 0 under a unit impulse along {} on the footprint; band as /response/x", group.back());
+    const std::pair<const char*, const Eigen::MatrixXd*> responses[] = {
+        {"x", &h.hx}, {"y", &h.hy}, {"z", &h.hz}};
+    for (const auto& [axis, values] : responses) {
+      file.write_matrix(fmt::format("{}/response/{}", group, axis), *values,
+                        {.units = "m/(N s)",
+                         .description = fmt::format("displacement along {}", axis) + load,
+                         .frame = axes});
+    }
+    const std::pair<const char*, const Eigen::MatrixXd*> means[] = {
+        {"x", &h.mean_x}, {"y", &h.mean_y}, {"response", &h.mean}};
+    for (const auto& [name, values] : means) {
+      file.write_matrix(fmt::format("{}/neighbour/{}", group, name), *values,
+                        {.units = "m/(N s)",
+                         .description = "mean displacement of a footprint there" + load,
+                         .frame = values == &h.mean ? "downward" : axes});
+    }
+  }
+  if (!stored.identity.empty())
+    file.write_names("/identity", stored.identity, "what the responses depend on, beside their distances");
+  file.write_text("/parameters", visu::to_json(stored.parameters),
+                  "JSON array of {group, name, value, unit, source}");
   file.write_text("/site", stored.site.text, "the site file, as read");
   file.commit();
 }
@@ -149,12 +193,24 @@ StoredMobility read_mobility(const std::filesystem::path& path) {
   m.hy = reader.read_matrix("/response/y");
   m.hz = reader.read_matrix("/response/z");
   m.mean = reader.read_matrix("/neighbour/response");
+  for (const LoadDirection direction : {LoadDirection::x, LoadDirection::y}) {
+    const std::string group = group_of(direction);
+    if (!reader.has(group)) continue;
+    const auto read = [&](const char* name) { return reader.read_matrix(group + name); };
+    m.horizontal[direction] = {read("/response/x"),  read("/response/y"),  read("/response/z"),
+                               read("/neighbour/x"), read("/neighbour/y"), read("/neighbour/response")};
+  }
   if (m.hz.rows() != time.size()) {
     throw InputError(fmt::format("{}: \"/response/z\" has {} rows, must have {} as \"/time\"", path.string(),
                                  m.hz.rows(), time.size()));
   }
   if (const std::string fault = find_fault(m); !fault.empty()) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));
+  }
+  if (reader.has("/identity")) stored.identity = reader.read_names("/identity");
+  if (reader.has("/parameters")) {
+    stored.parameters =
+        visu::parameters_from_json(reader.read_text("/parameters"), path.string() + ":/parameters");
   }
   stored.site = parse_site(reader.read_text("/site"), path.string() + ":/site");
   return stored;

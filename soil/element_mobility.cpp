@@ -1,0 +1,218 @@
+#include "soil/element_mobility.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "easydyn/error.hpp"
+#include "easydyn/require.hpp"
+#include "soil/frequency_filter.hpp"
+#include "soil/impulse_synthesis.hpp"
+#include "soil/layered/layered_mobility.hpp"
+#include "soil/mobility_identity.hpp"
+#include "soil/prediction.hpp"
+
+namespace easydyn::soil {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+
+constexpr double pulse_force = 1e6;  // [N] largest; the fields are in single precision
+
+/// s [s] of the pulse: exp(-(pi f s)^2) = 0.1 where the loads end.
+double compute_pulse_width(double highest_frequency) {
+  return std::sqrt(std::log(10.0)) / (std::numbers::pi * roll_off * highest_frequency);
+}
+
+/// The pulse from where it is 1e-7 of its top on; with a crossover, until both parts have come to rest.
+SurfaceLoads make_pulse(const Mobility& distances, double highest_frequency, double crossover) {
+  const double width = compute_pulse_width(highest_frequency), half = 4 * width;
+  const double end = crossover > 0 ? half + 3 / crossover : half;
+  const auto samples = static_cast<Index>(std::ceil((half + end) / (width / 40))) + 1;
+  SurfaceLoads pulse;
+  pulse.footprints = {{0, 0, distances.length, distances.width}};
+  pulse.time = Eigen::VectorXd::LinSpaced(samples, -half, end);
+  pulse.force = pulse_force * (-(pulse.time / width).array().square()).exp().matrix();
+  return pulse;
+}
+
+void check_ground(const Site& site, const std::vector<Footprint>& footprints) {
+  for (std::size_t b = 0; b < site.blocks.size(); ++b) {
+    const Block& block = site.blocks[b];
+    const std::string who =
+        fmt::format("block {}{}", b + 1, block.name.empty() ? "" : " \"" + block.name + "\"");
+    if (std::isfinite(block.x[0]) || std::isfinite(block.x[1])) {
+      throw ModelError(
+          fmt::format("{}: x = {}..{} m, must have no ends: superposition needs a ground that does not vary "
+                      "along the track (soil run takes any blocks)",
+                      who, block.x[0], block.x[1]));
+    }
+    if (!block.mirrored && block.y[0] != -block.y[1]) {
+      throw ModelError(
+          fmt::format("{}: y = {}..{} m, must be symmetric about y = 0, or mirrored = true, for responses "
+                      "from a quarter model (soil run --full-model takes any blocks)",
+                      who, block.y[0], block.y[1]));
+    }
+  }
+  for (std::size_t f = 0; f < footprints.size(); ++f) {
+    if (footprints[f].direction != LoadDirection::down) {
+      throw ModelError(fmt::format(
+          "footprint {} is loaded horizontally, must be vertically for responses by finite elements "
+          "(soil run and the layered half-space take any)",
+          f + 1));
+    }
+  }
+  if (site.blocks.empty()) return;
+  for (std::size_t f = 0; f < footprints.size(); ++f) {
+    if (std::abs(footprints[f].y) > 1e-9) {
+      throw ModelError(
+          fmt::format("footprint {}: y = {} m, must be 0 on a site with blocks", f + 1, footprints[f].y));
+    }
+  }
+}
+
+Site make_model(const Site& site, const Mobility& distances, double duration) {
+  Site model = site;
+  model.receivers.clear();
+  for (const auto& [x, y, z] : distances.places) {
+    model.receivers.push_back({fmt::format("({:.6g}, {:.6g}, {:.6g}) m", x, y, z), {x, y, z}});
+  }
+  model.snapshots.clear();
+  model.taper_length = 0;
+  model.duration = duration;
+  return model;
+}
+
+SolverOptions make_options(SolverOptions options, const Mobility& distances) {
+  options.half_model = options.quarter_model = true;
+  options.output_step = 0;
+  options.preload_time = 0;
+  options.observed.clear();
+  for (const auto& [x, y] : distances.shifts)
+    options.observed.push_back({x, y, distances.length, distances.width});
+  return options;
+}
+
+double choose_window(const Site& site, const Mobility& distances, double window) {
+  require_not_negative("mobility", "window", window, "s");
+  return ImpulseSynthesis(site.highest_frequency,
+                          window > 0 ? window : estimate_element_window(site, distances))
+      .window();
+}
+
+double find_reach(const Mobility& distances) {
+  double reach = 0;
+  for (const auto& place : distances.places) reach = std::max(reach, place[0]);
+  return reach;
+}
+
+/// Takes the shifts out that lie farther along x than all places.
+Mobility take_far_shifts(Mobility& distances) {
+  Mobility far;
+  far.length = distances.length;
+  far.width = distances.width;
+  const double reach = find_reach(distances);
+  const auto first_far = std::stable_partition(distances.shifts.begin(), distances.shifts.end(),
+                                               [&](const auto& shift) { return shift[0] <= reach + 1e-6; });
+  far.shifts.assign(first_far, distances.shifts.end());
+  distances.shifts.erase(first_far, distances.shifts.end());
+  return far;
+}
+
+void append_shifts(const Mobility& from, Mobility& to) {
+  Eigen::MatrixXd mean(to.mean.rows(), to.mean.cols() + from.mean.cols());
+  mean << to.mean, from.mean;
+  to.mean = std::move(mean);
+  to.shifts.insert(to.shifts.end(), from.shifts.begin(), from.shifts.end());
+}
+
+double compute_rest(const Mobility& m) {
+  const Index last = (m.hz.rows() - m.before) / 10;
+  double rest = 0;
+  for (const Eigen::MatrixXd* h : {&m.hx, &m.hy, &m.hz, &m.mean}) {
+    if (h->size() == 0) continue;
+    const double largest = h->cwiseAbs().maxCoeff();
+    if (largest > 0) rest = std::max(rest, h->bottomRows(last).cwiseAbs().maxCoeff() / largest);
+  }
+  return rest;
+}
+
+}  // namespace
+
+double estimate_element_window(const Site& site, const Mobility& distances) {
+  double slowest = site.layers.front().cs;
+  for (const Layer& layer : site.layers) slowest = std::min(slowest, layer.cs);
+  for (const Block& block : site.blocks)
+    if (!block.open) slowest = std::min(slowest, block.material.cs);
+  return distances.farthest() / (0.8 * slowest) + 0.5;
+}
+
+ElementMobility::ElementMobility(const Site& site, const std::vector<Footprint>& footprints,
+                                 const ElementMobilityOptions& options)
+    : site_((check_ground(site, footprints), site)),
+      options_(options),
+      near_(list_distances(footprints, site.receivers)),
+      far_(site.blocks.empty() ? take_far_shifts(near_) : Mobility{}),
+      window_(choose_window(site, near_, options.window)),
+      pulse_(make_pulse(near_, site.highest_frequency, options.solver.crossover_frequency)),
+      model_(make_model(site, near_, window_ - pulse_.time(0))),
+      solver_(model_, pulse_, make_options(options.solver, near_)) {}
+
+StoredMobility ElementMobility::compute(const RunControl& control) {
+  const GroundMotion motion = solver_.run(control);
+  const ImpulseSynthesis synthesis(site_.highest_frequency, window_);
+  const Index lines = synthesis.w().size(), nt = motion.time.size();
+  const double dt = solver_.time_step(), width = compute_pulse_width(site_.highest_frequency);
+  const double output_step = (motion.time(nt - 1) - motion.time(0)) / static_cast<double>(nt - 1);
+
+  // Transforms of displacements, and of velocities v_n = (u_n+1 - u_n-1) / (2 dt), at the lines.
+  Eigen::MatrixXcd of_displacement(lines, nt);
+  Eigen::VectorXcd per_velocity(lines);
+  for (Index i = 0; i < lines; ++i) {
+    const Complex s = Complex(0, 1) * synthesis.w()(i);
+    const Complex z = options_.removes_time_error ? 2 / dt * std::asinh(s * dt / 2.0) : s;
+    const Complex pulse =
+        pulse_force * width * std::sqrt(std::numbers::pi) * std::exp(z * z * width * width / 4.0);
+    of_displacement.row(i) =
+        output_step / pulse * (-z * motion.time.cast<Complex>()).array().exp().matrix().transpose();
+    per_velocity(i) = options_.removes_time_error ? dt / std::sinh(z * dt) : 1.0 / s;
+  }
+  const auto transform = [&](const Eigen::MatrixXd& records) -> Eigen::MatrixXcd {
+    Eigen::MatrixXcd spectra(lines, records.cols());
+    spectra.real() = of_displacement.real() * records;
+    spectra.imag() = of_displacement.imag() * records;
+    return spectra;
+  };
+  StoredMobility stored;
+  stored.site = site_;
+  stored.method = element_method;
+  stored.damping = options_.solver.damping == DampingModel::none ? GroundDamping::none
+                   : options_.solver.damping == DampingModel::stiffness_proportional
+                       ? GroundDamping::stiffness_proportional
+                       : GroundDamping::maxwell_body;
+  stored.identity = describe_responses(site_, stored.damping, &options_.solver);
+  add_mesh(stored.parameters, site_, solver_);
+  stored.mobility = near_;
+  const auto integrate = [&](const Eigen::MatrixXd& velocity) -> Eigen::MatrixXcd {
+    return per_velocity.asDiagonal() * transform(velocity);
+  };
+  synthesis.update(
+      stored.mobility, integrate(motion.vx), integrate(motion.vy), integrate(motion.vz),
+      transform(motion.footprint_displacement.rightCols(static_cast<Index>(near_.shifts.size()))));
+  rest_ = compute_rest(stored.mobility);
+  if (!far_.shifts.empty()) {
+    Mobility far = far_;
+    update_mobility(LayeredGround(site_, stored.damping), site_.highest_frequency, far, window_,
+                    options_.solver.threads);
+    append_shifts(far, stored.mobility);
+    stored.parameters.push_back({"mesh", "footprints farther away along x are by the layered half-space",
+                                 find_reach(near_), "m", "computed"});
+  }
+  return stored;
+}
+
+}  // namespace easydyn::soil
