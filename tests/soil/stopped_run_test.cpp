@@ -189,7 +189,7 @@ TEST_F(StoppedRun, IsKeptWhenTheNextOneStartsAnew) {
 TEST_F(StoppedRun, OfImpulseResponsesGoesOnWithTheSameCommand) {
   const auto start_mobility = [&](const std::string& name) {
     return start_program(name, {SOIL_PROGRAM, "mobility", (folder_ / "site.toml").string(), "--loads",
-                                (folder_ / "loads.h5").string(), "--method", "elements", "--window", "6",
+                                (folder_ / "loads.h5").string(), "--method", "elements", "--window", "3",
                                 "--threads", "1", "--output", (folder_ / (name + ".h5")).string()});
   };
   ASSERT_EQ(finish(start_mobility("whole")), 0) << err("whole");
