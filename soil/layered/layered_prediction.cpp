@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "easydyn/error.hpp"
-#include "soil/mobility_identity.hpp"
 #include "soil/layered/layered_mobility.hpp"
 #include "soil/layered/superposition.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/recoupling.hpp"
 
 namespace easydyn::soil {
