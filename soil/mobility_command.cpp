@@ -141,7 +141,7 @@ void run(const Arguments& arguments, const std::string& command_line) {
   fs::path checkpoint;
   if (arguments.has_elements()) {
     ElementMobility mobility(site, footprints, options);
-    checkpoint = fs::path(output).replace_extension(".checkpoint.bin");
+    checkpoint = fs::absolute(output).replace_extension(".checkpoint.bin");
     const RunControl control = make_control(checkpoint);
     print_run_summary(stdout, mobility.model(), mobility.pulse(), mobility.solver());
     print_file_summary(stdout, mobility.solver(), control);

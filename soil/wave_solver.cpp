@@ -291,8 +291,8 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     throw ModelError("solver: footprints are observed under a horizontal load, must be under vertical ones");
   for (const Footprint& f : options.observed)
     if (!(f.length > 0 && f.width > 0))
-      throw ModelError(fmt::format("solver: an observed footprint is {} m x {} m, must be a rectangle", f.length,
-                                   f.width));
+      throw ModelError(fmt::format("solver: an observed footprint is {} m x {} m, must be a rectangle",
+                                   f.length, f.width));
   for (std::size_t f = 0; f < options.observed.size(); ++f)
     observed.push_back(compute_mean_weights(lattice, options.observed[f], loads.footprints.size() + f + 1));
 

@@ -106,8 +106,12 @@ run tram --speed 40
 expect "the three steps succeed" is "$code" 0
 expect "only the needed targets are built" has "$log" "--target tram soil_program"
 expect "step 1 gets the site and the options" has "$log" "tram --site examples/sites/tram.toml --output results/tram --speed 40"
-expect "step 2" has "$log" "soil run examples/sites/tram.toml results/tram/surface_loads.h5 --output results/tram"
-expect "step 3" has "$log" "soil report results/tram"
+expect "impulse responses, beside the site file" has "$log" "soil mobility examples/sites/tram.toml \
+--loads results/tram/surface_loads.h5 --method elements --output examples/sites/tram.mobility.h5"
+expect "the first time, it says what they are for" has "$err" "once for this site (expected time below"
+expect "superposition" has "$log" "soil predict examples/sites/tram.mobility.h5 results/tram/surface_loads.h5 \
+--site examples/sites/tram.toml --output results/tram"
+expect "the report" has "$log" "soil report results/tram"
 expect "the report is named last" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
 expect "the build is quiet" lacks "$out$err" "cmake"
 expect "apt is left alone when nothing is missing" lacks "$log" "apt-get"
@@ -120,16 +124,39 @@ expect "from elsewhere, results stay in the repository" has "$log" "tram --site 
 expect "from elsewhere, the report is named" is "$(tail -n 1 <<<"$out")" "$tree/results/tram/report.html"
 expect "from elsewhere, nothing is left here" is "$(ls -A)" ""
 
+# Options for the ground; the program does not get them.
+run tram --verify --speed 40
+expect "--verify goes to the ground" has "$log" "--output $tree/results/tram --verify"
+expect "the program gets the others" has "$log" "tram --site $tree/examples/sites/tram.toml --output $tree/results/tram --speed 40"
+run tram --speed 40 --direct --verify
+expect "--direct runs the finite elements under all loads" has "$log" "soil run $tree/examples/sites/tram.toml \
+$tree/results/tram/surface_loads.h5 --output $tree/results/tram --snapshot-step 0.01 --verify"
+expect "--direct needs no impulse responses" lacks "$log" "soil mobility"
+run tram --layered
+expect "--layered predicts from the site file" has "$log" "soil predict $tree/examples/sites/tram.toml"
+expect "--layered keeps nothing" lacks "$log" "soil mobility"
+for other in --verify --direct; do
+  run tram "$other" --layered
+  expect "--layered has nothing to $other" is "$code" 2
+  expect "and nothing runs" is "$log" ""
+done
+touch "$tree/examples/sites/tram.mobility.h5"
+run tram
+expect "with responses there, no long run is announced" lacks "$err" "once for this site"
+rm "$tree/examples/sites/tram.mobility.h5"
+run study --direct
+expect "a program without a site gets all options" has "$log" "--direct"
+
 # An output folder of the user's.
 run tram --output mine
 expect "--output DIR reaches step 1 as given" has "$log" "tram --site $tree/examples/sites/tram.toml --output mine"
-expect "--output DIR reaches step 2" has "$log" "mine/surface_loads.h5 --output mine"
+expect "--output DIR reaches step 2" has "$log" "mine/surface_loads.h5 --site $tree/examples/sites/tram.toml --output mine"
 expect "--output DIR reaches step 3" has "$log" "soil report mine"
 expect "the report is there" is "$out" "$scratch/elsewhere/mine/report.html"
 cp "$tree/examples/sites/tram.toml" "$scratch/elsewhere/other.toml"
 run tram --output mine --site other.toml
 expect "another site reaches step 1 once" has "$log" "tram --output mine --site other.toml"
-expect "another site reaches step 2" has "$log" "soil run other.toml mine/surface_loads.h5"
+expect "another site reaches step 2" has "$log" "soil mobility other.toml --loads mine/surface_loads.h5"
 rm "$scratch/elsewhere/other.toml"
 run tram --output=other
 expect "--output=DIR is understood" is "$out" "$scratch/elsewhere/other/report.html"
@@ -137,8 +164,9 @@ cd "$tree"
 
 # Help goes to the program and runs nothing else.
 run tram --help
-expect "help of the program" is "$out" "help of tram"
-expect "no soil after help" lacks "$log" "soil run"
+expect "help of the program" has "$out" "help of tram"
+expect "with the options for the ground" has "$out" "--layered "
+expect "no soil after help" lacks "$log" "soil "
 expect "an earlier report survives help" test -e results/tram/report.html
 
 # A sweep of speeds leaves no new loads: no ground, and the earlier report stays.
@@ -146,7 +174,7 @@ touch -d '1 hour ago' results/tram/surface_loads.h5
 touch "$scratch/sweep"
 run tram --speed 30,40
 expect "a sweep succeeds" is "$code" 0
-expect "a sweep has no soil" lacks "$log" "soil run"
+expect "a sweep has no soil" lacks "$log" "soil "
 expect "a sweep leaves the earlier report" test -e results/tram/report.html
 rm "$scratch/sweep"
 
@@ -159,10 +187,10 @@ echo 1 >"$scratch/fail_program"
 run tram
 expect "the code of step 1" is "$code" 1
 expect "no path after a failure of step 1" is "$out" ""
-expect "no soil after a failure of step 1" lacks "$log" "soil run"
+expect "no soil after a failure of step 1" lacks "$log" "soil "
 expect "no stale report after a failure of step 1" test ! -e results/tram/report.html
 rm "$scratch/fail_program"
-for step in run report; do
+for step in mobility predict report; do
   run tram
   echo 3 >"$scratch/fail_soil_$step"
   run tram

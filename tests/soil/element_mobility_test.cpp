@@ -8,11 +8,11 @@
 #include <numbers>
 
 #include "easydyn/error.hpp"
-#include "soil/impulse_synthesis.hpp"
 #include "soil/layered/layered_mobility.hpp"
-#include "soil/layered/superposition.hpp"
+#include "soil/mobility_identity.hpp"
+#include "soil/mobility_prediction.hpp"
 #include "soil/prediction.hpp"
-#include "tests/soil/small_ground.hpp"
+#include "soil/recoupling.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -21,7 +21,8 @@ using Eigen::Index;
 
 Site make_site(double highest_frequency, double points) {
   Site site;
-  Layer top{.name = "top", .thickness = 2, .density = 1800, .cs = 150, .cp = 300, .damping = 0.03, .source = ""};
+  Layer top{
+      .name = "top", .thickness = 2, .density = 1800, .cs = 150, .cp = 300, .damping = 0.03, .source = ""};
   Layer bottom = top;
   bottom.cs = 300;
   bottom.cp = 600;
@@ -36,7 +37,8 @@ Site make_site(double highest_frequency, double points) {
 }
 
 // What loads up to the highest frequency see of a difference: |H - H'| / |H'| from 1/4 of it to it.
-double compare(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, double step, double highest_frequency) {
+double compare(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, double step,
+               double highest_frequency) {
   double difference = 0, size = 0;
   const Index nt = std::min(h.rows(), reference.rows());
   for (double f = highest_frequency / 4; f <= highest_frequency; f += highest_frequency / 40) {
@@ -48,23 +50,145 @@ double compare(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, doubl
   return std::sqrt(difference / size);
 }
 
-TEST(DISABLED_Degrees, A) {
-  for (const auto& [degree, points] : {std::pair{4, 5.3}, {5, 5.3}, {5, 4.5}, {6, 4.5}, {6, 4.0}}) {
-    Site site = make_site(40, points);
-    site.receivers = {{"4 m", {0, 4, 0}}, {"8 m", {1.2, 8, 0}}, {"16 m", {1.2, 16, 0}}};
-    const std::vector<Footprint> footprints = {{0, 0, 0.3, 2.5}, {0.6, 0, 0.3, 2.5}, {1.2, 0, 0.3, 2.5}};
-    ElementMobility elements(site, footprints, {.solver = {.degree = degree}});
-    const Mobility m = elements.compute().mobility;
-    Mobility layered = list_distances(footprints, site.receivers);
-    layered.shifts = m.shifts;
-    update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 40, layered, elements.window());
-    const RunSummary s = elements.solver().compute_summary();
-    std::printf("degree %d points %g: work %.3g, hz %.4f hy %.4f mean %.4f rest %.4f\n", degree, points,
-                double(s.dofs) * double(s.steps), compare(m.hz, layered.hz, m.step, 40),
-                compare(m.hy, layered.hy, m.step, 40), compare(m.mean, layered.mean, m.step, 40), elements.rest());
-    for (Index c = 0; c < m.hz.cols(); ++c)
-      std::printf("  %g %g: %.4f\n", m.places[c][0], m.places[c][1], compare(m.hz.col(c), layered.hz.col(c), m.step, 40));
+const std::vector<Footprint> sleepers = {{0, 0, 1, 2.5}, {1.2, 0, 1, 2.5}, {12, 0, 1, 2.5}};
+
+TEST(ElementMobility, AgreesWithTheLayeredHalfSpace) {
+  const Site site = make_site(40, 5.5);
+  ElementMobility elements(site, sleepers);
+  const StoredMobility stored = elements.compute();
+  const Mobility& m = stored.mobility;
+  EXPECT_EQ(stored.method, "finite elements");
+  EXPECT_EQ(find_missing(m, list_distances(sleepers, site.receivers)), "");
+  EXPECT_LT(elements.rest(), 0.01);
+  Mobility layered = m;
+  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 40, layered, elements.window());
+  ASSERT_EQ(layered.hz.rows(), m.hz.rows());
+  // 3 % is to be held by one-run superposition; measured: 0.7 %.
+  EXPECT_LT(compare(m.hx, layered.hx, m.step, 40), 0.03);
+  EXPECT_LT(compare(m.hy, layered.hy, m.step, 40), 0.03);
+  EXPECT_LT(compare(m.hz, layered.hz, m.step, 40), 0.03);
+  // The loaded footprint, 1 m on elements of 2.7 m that only resolve the waves, is too stiff by 5.5 %, as in a direct run.
+  for (std::size_t s = 0; s < m.shifts.size(); ++s) {
+    const auto c = static_cast<Index>(s);
+    EXPECT_LT(compare(m.mean.col(c), layered.mean.col(c), m.step, 40), m.shifts[s][0] == 0 ? 0.08 : 0.03)
+        << m.shifts[s][0];
   }
+  EXPECT_EQ(m.before, layered.before);
+}
+
+TEST(ElementMobility, TakesFootprintsBeyondTheReceiversFromTheLayeredHalfSpace) {
+  // Receivers 12 m along the track from the last footprint: no footprint is beyond. Nearer ones alone: two are.
+  Site site = make_site(20, 4);
+  site.receivers = {{"4 m", {6, 4, 0}}};  // at most 6 m along x from any footprint
+  ElementMobility elements(site, sleepers, {.solver = {.degree = 3}});
+  EXPECT_LT(elements.solver().lattice().interior_x()[1], 6 + site.margin + 3);
+  const StoredMobility stored = elements.compute();
+  Mobility layered = stored.mobility;
+  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 20, layered, elements.window());
+  for (std::size_t s = 0; s < layered.shifts.size(); ++s) {
+    const bool is_far = layered.shifts[s][0] > 6;
+    EXPECT_EQ(stored.mobility.mean.col(Index(s)) == layered.mean.col(Index(s)), is_far)
+        << layered.shifts[s][0];
+  }
+  EXPECT_EQ(find_missing(stored.mobility, list_distances(sleepers, site.receivers)), "");
+}
+
+TEST(ElementMobility, IsFreeOfTheLeapfrogsTimeError) {
+  // Against the same mesh with a third of the time step. What is left is the error of sponge, dashpots and memory
+  // variables, which the shift of the frequency does not remove. Measured at 30 Hz: 0.57 and 0.06 %.
+  Site site = make_site(20, 4);
+  const std::vector<Footprint> one = {{0, 0, 1, 2.5}};
+  const auto compute = [&](double safety, bool corrected) {
+    ElementMobilityOptions options;
+    options.solver.double_precision = true;
+    options.solver.step_safety = safety;
+    options.removes_time_error = corrected;
+    return ElementMobility(site, one, options).compute().mobility;
+  };
+  const Mobility reference = compute(0.3, true), corrected = compute(0.95, true),
+                 plain = compute(0.95, false);
+  const double with = compare(corrected.hz, reference.hz, reference.step, 20),
+               without = compare(plain.hz, reference.hz, reference.step, 20);
+  std::printf("time error: %.5f, corrected %.5f\n", without, with);
+  EXPECT_GT(without, 5 * with);
+  EXPECT_LT(with, 1e-3);
+}
+
+TEST(ElementMobility, HoldsBesideTrenchesAlongTheTrack) {
+  // Superposed and direct, on lattices that differ in x: open trenches on both sides.
+  Site site = make_site(20, 4);
+  site.receivers = {{"behind", {0, 7, 0}}};
+  site.duration = 0.6;
+  const SurfaceLoads loads = [] {
+    SurfaceLoads made;
+    made.footprints = {{-1.2, 0, 1, 2.5}, {0, 0, 1, 2.5}, {1.2, 0, 1, 2.5}};
+    made.time = Eigen::VectorXd::LinSpaced(301, 0, 0.3);
+    made.force.resize(301, 3);
+    for (Index i = 0; i < 301; ++i) {
+      for (Index j = 0; j < 3; ++j) {
+        const double s = (made.time(i) - 0.12 - 0.02 * double(j)) / 0.03;
+        made.force(i, j) = 1e4 * std::exp(-s * s);
+      }
+    }
+    return made;
+  }();
+  const auto compute_direct = [&] {
+    WaveSolver solver = make_solver(site, loads);
+    return predict_vibrations(site, loads, solver, nullptr);
+  };
+  const Vibrations without = compute_direct();
+  site.blocks.push_back(
+      {.name = "trench", .y = {4, 4.6}, .z = {-2, 0}, .open = true, .mirrored = true, .material = {}});
+  const Vibrations direct = compute_direct(),
+                   superposed = predict_vibrations(ElementMobility(site, loads.footprints).compute(), loads);
+  const Eigen::MatrixXd same_times = interpolate(direct.time, direct.vz, superposed.time);
+  const double difference = (superposed.vz - same_times).norm() / same_times.norm();
+  const double change =
+      (direct.vz - interpolate(without.time, without.vz, direct.time)).norm() / without.vz.norm();
+  std::printf("trench: %.4f; changes %.3f\n", difference, change);
+  EXPECT_LT(difference, 0.03);
+  EXPECT_GT(change, 0.1);
+}
+
+TEST(ElementMobility, AddsTheLatticeOfLowFrequencies) {
+  Site site = make_site(30, 4);
+  const std::vector<Footprint> one = {{0, 0, 1, 2.5}};
+  const auto compute = [&](double crossover) {
+    return ElementMobility(site, one, {.solver = {.degree = 3, .crossover_frequency = crossover}})
+        .compute()
+        .mobility;
+  };
+  const Mobility plain = compute(0), crossed = compute(10);
+  const double difference = compare(crossed.hz, plain.hz, plain.step, 30);
+  std::printf("crossover: %.4f\n", difference);
+  EXPECT_LT(difference, 0.05);
+  EXPECT_GT(difference, 0);
+}
+
+TEST(ElementMobility, RefusesBlocksThatDoNotFit) {
+  Site site = make_site(20, 4);
+  const auto compute = [&](double y) { ElementMobility(site, {{0, y, 1, 2.5}}); };
+  site.blocks = {{.name = "trench",
+                  .x = {-20, 20},
+                  .y = {4, 5},
+                  .z = {-2, 0},
+                  .open = true,
+                  .mirrored = true,
+                  .material = {}}};
+  EXPECT_THAT([&] { compute(0); }, ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(
+                                       "block 1 \"trench\": x = -20..20 m, must have no ends")));
+  site.blocks[0].x = Block().x;
+  site.blocks[0].mirrored = false;
+  EXPECT_THAT([&] { compute(0); }, ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(
+                                       "block 1 \"trench\": y = 4..5 m, must be symmetric about y = 0")));
+  site.blocks[0].mirrored = true;
+  EXPECT_THAT([&] { compute(1); }, ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(
+                                       "footprint 1: y = 1 m, must be 0 on a site with blocks")));
+  EXPECT_THAT(
+      [&] {
+        ElementMobility(make_site(20, 4), {{0, 0, 0, 0}});
+      },
+      ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr("is a point, must be a rectangle")));
 }
 
 }  // namespace

@@ -175,6 +175,70 @@ TEST_F(SoilProgram, PredictsFromImpulseResponsesAsFromTheSite) {
   expect_refused(call("mobility " + site), "no footprint: give --loads");
 }
 
+TEST_F(SoilProgram, KeepsImpulseResponsesOfFiniteElementsWhileTheyHold) {
+  std::string text = tiny_site;
+  text.replace(text.find("margin = 0"), 10, "margin = 20");
+  text.replace(text.find("points_per_wavelength = 4"), 25, "points_per_wavelength = 8");
+  folder_.write("site.toml", text);
+  const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();
+  const std::string file = (folder_ / "site.mobility.h5").string();  // beside the site file
+  const std::string command = "mobility " + site + " --loads " + loads + " --method elements";
+  const Outcome announced = call(command + " --dry-run");
+  EXPECT_THAT(announced.out, AllOf(HasSubstr("quarter model"), HasSubstr("memory "), HasSubstr("expected ")));
+  EXPECT_FALSE(std::filesystem::exists(file));
+  const Outcome first = call(command);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(first.err, "");
+  EXPECT_THAT(first.out, AllOf(HasSubstr("waves: done in"), HasSubstr("finite elements")));
+  EXPECT_EQ(call(command).out, file + ": up to date\n");
+
+  // A comment, another name, fewer receivers: still that ground, and all distances are there.
+  std::string fewer = "# a remark\n" + text;
+  fewer.replace(fewer.find("[[receiver]]\nname = \"10 m\"\ndistance = 10\n"), 40, "");
+  folder_.write("site.toml", fewer);
+  EXPECT_EQ(call(command).out, file + ": up to date\n");
+  const std::string predict = "predict " + file + " " + loads + " --output " + (folder_ / "out").string();
+  ASSERT_EQ(call(predict).status, 0);
+  EXPECT_EQ(read_vibrations(folder_ / "out/vibrations.h5").receivers.size(), 2u);  // of the file
+  const Outcome verified = call(predict + " --verify --site " + site);
+  ASSERT_EQ(verified.status, 0) << verified.err;
+  EXPECT_THAT(verified.out, HasSubstr("difference from the layered half-space"));
+  const Vibrations v = read_vibrations(folder_ / "out/vibrations.h5");
+  ASSERT_EQ(v.receivers.size(), 1u);  // of the site file
+  EXPECT_EQ(v.method, "superposition of impulse responses by: finite elements");
+  EXPECT_LT(compare_with_semi_analytical(v)[0].l2[2], 0.1);  // the edge of a small model and low frequencies
+  EXPECT_EQ(call("report " + (folder_ / "out").string()).status, 0);
+  EXPECT_THAT(testing::read_whole_file(folder_ / "out/report.html"), HasSubstr(v.method));
+
+  // Another ground, a farther receiver, other options: computed anew; the earlier file is set aside.
+  std::string other = text;
+  folder_.write("site.toml", other.replace(other.find("cs = 200"), 8, "cs = 210"));
+  std::filesystem::remove_all(folder_ / "out");
+  expect_refused(call(predict + " --site " + site),
+                 "layer 1: cs = 200 m/s there, layer 1: cs = 210 m/s here");
+  const Outcome renewed = call(command);
+  ASSERT_EQ(renewed.status, 0) << renewed.err;
+  EXPECT_THAT(renewed.out, HasSubstr("does not hold any more: layer 1: cs = 200 m/s there"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "site.mobility.previous.h5"));
+  EXPECT_THAT(call(command + " --degree 3 --dry-run").out,
+              HasSubstr("degree of the elements = 4 there, degree of the elements = 3 here"));
+  EXPECT_THAT(call("mobility " + site + " --loads " + loads + " --dry-run").out,
+              HasSubstr("method = finite elements there, method = layered half-space here"));
+  folder_.write("site.toml", other.replace(other.find("distance = 20"), 13, "distance = 21"));
+  EXPECT_THAT(call(command + " --dry-run").out,
+              HasSubstr("no receiver at (0, 21, 0) m from a footprint there"));
+  expect_refused(call(command + " --damping constant-q"), "must be constant, stiffness or none");
+  expect_refused(call("predict " + site + " " + loads + " --verify --output " + (folder_ / "out").string()),
+                 "the responses are semi-analytical themselves");
+}
+
+TEST_F(SoilProgram, TakesPicturesWithoutAWordInTheSiteFile) {
+  const Outcome outcome = run(tiny_site, "--snapshot-step 0.2");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/snapshots/surface.pvd"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "out/snapshots/section.pvd"));
+}
+
 TEST_F(SoilProgram, VerifiesFiniteElementsByTheLayeredHalfSpace) {
   const Outcome outcome = run_replaced("margin = 0", "margin = 30", "--verify");
   ASSERT_EQ(outcome.status, 0) << outcome.err;

@@ -11,6 +11,7 @@
 #include <thread>
 #include <vector>
 
+#include "soil/mobility_file.hpp"
 #include "soil/surface_loads.hpp"
 #include "soil/vibrations.hpp"
 #include "tests/temporary_folder.hpp"
@@ -65,6 +66,9 @@ class StoppedRun : public ::testing::Test {
                                       "--threads",
                                       "1"};
     words.insert(words.end(), options.begin(), options.end());
+    return start_program(out, words);
+  }
+  pid_t start_program(const std::string& out, std::vector<std::string> words) const {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
@@ -180,6 +184,27 @@ TEST_F(StoppedRun, IsKeptWhenTheNextOneStartsAnew) {
                                     "checkpoint.previous.bin"));
   EXPECT_TRUE(has("out/checkpoint.previous.bin"));
   EXPECT_FALSE(has("out/checkpoint.bin"));
+}
+
+TEST_F(StoppedRun, OfImpulseResponsesGoesOnWithTheSameCommand) {
+  const auto start_mobility = [&](const std::string& name) {
+    return start_program(name, {SOIL_PROGRAM, "mobility", (folder_ / "site.toml").string(), "--loads",
+                                (folder_ / "loads.h5").string(), "--method", "elements", "--window", "3",
+                                "--threads", "1", "--output", (folder_ / (name + ".h5")).string()});
+  };
+  ASSERT_EQ(finish(start_mobility("whole")), 0) << err("whole");
+  const pid_t child = start_mobility("parts");
+  ASSERT_TRUE(wait_for_run("parts"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  kill(child, SIGTERM);
+  ASSERT_EQ(finish(child), 143) << err("parts");
+  EXPECT_THAT(err("parts"), HasSubstr("To go on: "));
+  EXPECT_TRUE(has("parts.checkpoint.bin"));
+  EXPECT_FALSE(has("parts.h5"));
+  ASSERT_EQ(finish(start_mobility("parts")), 0) << err("parts");
+  EXPECT_EQ(err("parts"), "");  // it did not start anew
+  EXPECT_FALSE(has("parts.checkpoint.bin"));
+  EXPECT_EQ(read_mobility(folder_ / "parts.h5").mobility.hz, read_mobility(folder_ / "whole.h5").mobility.hz);
 }
 
 TEST_F(StoppedRun, NeedsACheckpointToGoOn) {
