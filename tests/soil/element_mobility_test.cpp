@@ -147,7 +147,7 @@ TEST(ElementMobility, HoldsBesideTrenchesAlongTheTrack) {
       (direct.vz - interpolate(without.time, without.vz, direct.time)).norm() / without.vz.norm();
   std::printf("trench: %.4f; changes %.3f\n", difference, change);
   EXPECT_LT(difference, 0.03);
-  EXPECT_GT(change, 0.1);
+  EXPECT_GT(change, 10 * difference);  // so that the trench is seen; measured 0.104 and 0.0037
 }
 
 TEST(ElementMobility, AddsTheLatticeOfLowFrequencies) {

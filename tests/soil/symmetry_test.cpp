@@ -151,23 +151,29 @@ TEST(QuarterModel, GivesTheMotionOfTheFullOneAtAllReceivers) {
 }
 
 TEST(QuarterModel, ShowsFootprintsWithoutALoad) {
-  // As footprints under no force in the full model; one crosses the plane x = 0, one is the loaded one, one lies behind.
+  // As footprints under no force in the full model: the loaded one, two that cross the plane x = 0, some behind it. Their
+  // middle is the origin, from which the far-field springs count.
   const Site site = small_site();
-  SurfaceLoads loads =
-      pulse({{0, 0, 0.6, 2.4}, {0.9, 0, 0.6, 2.4}, {0.1, 0, 0.6, 2.4}, {-0.9, 1.5, 0.6, 1.2}});
-  loads.force.rightCols(3).setZero();
+  SurfaceLoads loads = pulse({{0, 0, 0.6, 2.4},
+                              {0.9, 0, 0.6, 2.4},
+                              {-0.9, 0, 0.6, 2.4},
+                              {0.1, 0, 0.6, 2.4},
+                              {-0.1, 0, 0.6, 2.4},
+                              {-0.9, 1.5, 0.6, 1.2},
+                              {0.9, -1.5, 0.6, 1.2}});
+  loads.force.rightCols(6).setZero();
   SolverOptions options = small_options();
   options.half_model = false;
   const GroundMotion full = WaveSolver(site, loads, options).run();
   options.quarter_model = true;
   options.observed = loads.footprints;
   const GroundMotion quarter = WaveSolver(site, pulse({{0, 0, 0.6, 2.4}}), options).run();
-  ASSERT_EQ(quarter.footprint_displacement.cols(), 5);
-  EXPECT_LT(relative_difference(quarter.footprint_displacement.rightCols(4), full.footprint_displacement),
+  ASSERT_EQ(quarter.footprint_displacement.cols(), 8);
+  EXPECT_LT(relative_difference(quarter.footprint_displacement.rightCols(7), full.footprint_displacement),
             1e-10);
   EXPECT_LT(relative_difference(quarter.footprint_displacement.col(1), quarter.footprint_displacement.col(0)),
             1e-14);
-  EXPECT_GT(full.footprint_displacement.col(3).norm(), 0.01 * full.footprint_displacement.col(0).norm());
+  EXPECT_GT(full.footprint_displacement.col(5).norm(), 0.01 * full.footprint_displacement.col(0).norm());
 
   options.observed = {{30, 0, 0.6, 2.4}};  // the lattice reaches as far
   EXPECT_GE(WaveSolver(site, pulse({{0, 0, 0.6, 2.4}}), options).lattice().interior_x()[1], 30.3);
