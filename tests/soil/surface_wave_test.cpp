@@ -96,7 +96,8 @@ std::vector<Complex> cylindrical_wave(double k) {
 TEST(SurfaceWave, RunsAndDecaysAsRayleighsAlongALineOfReceivers) {
   const Line elastic(0), damped(0.03);
   double worst_speed = 0;
-  for (const double f : {15.0, 20.0, 30.0, 40.0}) {
+  for (const double f :
+       {20.0, 30.0, 40.0}) {  // the line begins 1.7 wavelengths away; at 15 Hz body waves add 0.4 %
     const double k = 2 * pi * f / (ratio * cs);
     const Complex slope = fit_slope(elastic.respond(f), cylindrical_wave(k));
     const double speed = 2 * pi * f / (k - slope.imag());

@@ -42,7 +42,6 @@ GroundMotion compute_motion(const std::vector<Layer>& layers, const std::vector<
   SolverOptions options;
   options.quarter_model = true;
   options.output_step = step;
-  options.step_safety = 0.5;
   WaveSolver solver(site, loads, options);
   std::printf("%.2f million dof, %ld steps\n", 1e-6 * static_cast<double>(solver.lattice().dofs()),
               solver.steps());
