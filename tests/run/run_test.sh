@@ -9,6 +9,9 @@ source "$here/check.sh"
 tree="$scratch/a house"
 mkdir -p "$tree/examples/sites" "$scratch/bin" "$scratch/elsewhere"
 cp "$here/../../run" "$tree/run"
+mkdir -p "$tree/tests/soil" "$tree/docs"
+cp "$here/../soil/verification_page.sh" "$tree/tests/soil/"
+printf '= Table\nlamb | Lamb | Pekeris | 1 | %% | Lamb.IsSolved\n' >"$tree/tests/soil/verification_cases.txt"
 printf '// Tram on a soft site.\n//\n// Run: ./run tram\napp.add_option("--output")\napp.add_option("--site")\n' >"$tree/examples/tram.cpp"
 cp "$tree/examples/tram.cpp" "$tree/examples/study.cpp"
 printf '// Double pendulum, from positions only.\n' >"$tree/examples/double_pendulum.cpp"
@@ -33,6 +36,13 @@ END
 stand_in ctest <<'END'
 echo "ctest $*" >>"$scratch/log"
 [[ $* == *sanitize* && -e $scratch/fail_sanitize ]] && exit 8
+if [[ -n ${EASYDYN_VERIFICATION:-} ]]; then
+  echo "lamb 0.5" >>"$EASYDYN_VERIFICATION"
+  result=run
+  [[ -e $scratch/fail_verification ]] && result=fail
+  echo "<testcase name=\"Lamb.IsSolved\" time=\"3\" status=\"$result\">" >"${!#}"
+  [[ $result == fail ]] && exit 8
+fi
 echo "100% tests passed, 0 tests failed out of 1"
 END
 stand_in cmake <<'END'
@@ -235,5 +245,17 @@ run test
 expect "a failure under the sanitizers counts" is "$code" 8
 expect "the release suite runs all the same" has "$(tail -n 2 <<<"$log")" "build/test"
 expect "what failed runs again at the end of the log" has "$(tail -n 1 <<<"$log")" "build/sanitize --rerun-failed"
+
+# Verification: the page is written whatever fails.
+run verify-soil
+expect "verification succeeds" is "$code" 0
+expect "only its programs are built" has "$log" "--target soil_verification"
+expect "its tests are run" has "$log" "^(Lamb[.]IsSolved)\$"
+expect "the page is named" is "$(tail -n 1 <<<"$out")" "docs/verification-soil.md"
+expect "the page has the figure" has "$(<docs/verification-soil.md)" "| 0.5 % | 1 % | held |"
+touch "$scratch/fail_verification"
+run verify-soil
+expect "a failed case counts" is "$code" 1
+expect "and stands on the page" has "$(<docs/verification-soil.md)" "**failed**"
 
 finish

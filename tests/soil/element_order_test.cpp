@@ -4,6 +4,7 @@
 
 #include "soil/gll.hpp"
 #include "soil/wave_engine.hpp"
+#include "tests/soil/verification_record.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -63,6 +64,7 @@ TEST(SpectralElements, ConvergeWithTwiceTheirDegree) {
                 std::log2(coarse / fine));
     EXPECT_GT(fine, 1e-13);  // not rounding
     EXPECT_NEAR(std::log2(coarse / fine), 2 * degree, 0.3);
+    test::record_verification("order-in-h", std::abs(std::log2(coarse / fine) - 2 * degree));
   }
 }
 
@@ -73,6 +75,7 @@ TEST(SpectralElements, ConvergeExponentiallyWithTheirDegree) {
     const double error = frequency_error(degree, 3);
     std::printf("degree %d: error of omega^2 %.3e, gain %.1f\n", degree, error, before / error);
     EXPECT_GT(before / error, gain) << "degree " << degree;
+    test::record_verification("order-in-degree", error / before);
     gain = before / error;
     before = error;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -11,6 +12,11 @@ namespace easydyn::soil::test {
 struct Errors {
   double vertical[3], radial[3];
 };
+
+inline double worst_of(const Errors& errors) {
+  return std::max(*std::max_element(errors.vertical, errors.vertical + 3),
+                  *std::max_element(errors.radial, errors.radial + 3));
+}
 
 /// Ricker force on a small footprint of a homogeneous half-space; relative L2 error of the velocity over the
 /// whole record at 5, 10 and 20 m.

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/soil/lamb_problem.hpp"
+#include "tests/soil/verification_record.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -22,6 +23,7 @@ TEST(LambsProblem, IsSolvedWithinHalfAPercentByDegreesFiveAndSix) {
       EXPECT_LT(errors.vertical[k], 0.005) << "degree " << degree;
       EXPECT_LT(errors.radial[k], 0.005) << "degree " << degree;
     }
+    test::record_verification("lamb-degree-5", 100 * test::worst_of(errors));
   }
 }
 

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/soil/lamb_problem.hpp"
+#include "tests/soil/verification_record.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -19,6 +20,7 @@ TEST(LambsProblem, IsSolvedWithinThreePercentAtTheDefaultResolution) {
       EXPECT_LT(errors.vertical[k], 0.03) << "nu " << nu;
       EXPECT_LT(errors.radial[k], 0.03) << "nu " << nu;
     }
+    test::record_verification("lamb-default", 100 * test::worst_of(errors));
   }
 }
 
@@ -28,6 +30,7 @@ TEST(LambsProblem, IsSolvedWithinOnePercentOnAFinerMeshWithASmallerStep) {
     EXPECT_LT(errors.vertical[k], 0.01);
     EXPECT_LT(errors.radial[k], 0.01);
   }
+  test::record_verification("lamb-small-step", 100 * test::worst_of(errors));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "soil/wave_solver.hpp"
+#include "tests/soil/verification_record.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -37,6 +38,8 @@ TEST(StaticLoad, DoesNotDriftWhenHeldForTwentySeconds) {
     const Eigen::Index nt = w.size();
     const double drift = (w.tail(nt - 10).array() - w(10)).abs().maxCoeff() / w(nt - 1);
     EXPECT_LT(drift, 0.01) << "nu " << nu;
+    test::record_verification("drift", 100 * drift);
+    test::record_verification("growth", motion.vz.bottomRows(nt / 2).cwiseAbs().maxCoeff() / w(nt - 1));
     EXPECT_LT(motion.vz.bottomRows(nt / 2).cwiseAbs().maxCoeff(), 1e-3 * w(nt - 1))
         << "nu " << nu;  // at rest
     // Uniform pressure p on a square of side a: mean displacement 0.946 (1 - nu^2) p a / E (Timoshenko and
