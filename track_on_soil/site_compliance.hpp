@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "soil/layered/mobility_file.hpp"
+#include "soil/mobility_file.hpp"
 #include "soil/site.hpp"
 #include "track/clm_calibration.hpp"
 #include "track/track_data.hpp"
