@@ -25,6 +25,7 @@
 #include <thread>
 #include <vector>
 
+#include "soil/layered/layered_mobility.hpp"
 #include "soil/layered/superposition.hpp"
 #include "soil/relaxation.hpp"
 #include "soil/wave_engine.hpp"

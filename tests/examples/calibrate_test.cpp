@@ -8,6 +8,7 @@
 
 #include "easydyn/results/result_file.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_prediction.hpp"
 #include "soil/recoupling.hpp"
 #include "soil/site_file.hpp"
 #include "soil/surface_loads.hpp"
