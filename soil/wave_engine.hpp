@@ -66,6 +66,7 @@ class WaveEngine {
   bool owns_line(int Y, int Z) const {
     return has_line(Y, Z) && (Y > first_.Y || Y == 0) && (Z > first_.Z || Z == 0);
   }
+  int threads() const { return team_.size(); }
   /// [byte] that this rank receives in a step.
   double halo_size() const { return static_cast<double>(received_.size() * sizeof(T)); }
 
