@@ -14,7 +14,7 @@ int part_begin(int count, int parts, int part) {
   return static_cast<int>(static_cast<long>(count) * part / parts);
 }
 
-/// Elements of one axis that touch a node: the lower and the upper one, or one of them twice.
+/// The first and the last element of an axis that touch a node.
 std::array<int, 2> elements_at(int node, int degree, int count) {
   const int e = node / degree;
   return {std::max(0, node % degree == 0 ? e - 1 : e), std::min(e, count - 1)};
@@ -48,19 +48,27 @@ Partition::Partition(int rows, int slabs, int degree, int ranks)
                          {part_begin(slabs, along_z_, z), part_begin(slabs, along_z_, z + 1)}});
 }
 
-std::vector<int> Partition::sharers(LinePlace line) const {
+int Partition::find_rank(ElementPlace row) const {
+  // Blocks are equal up to one row: the quotient is right or one too small.
+  int y = static_cast<int>(static_cast<long>(row.ey) * along_y_ / rows_);
+  int z = static_cast<int>(static_cast<long>(row.ez) * along_z_ / slabs_);
+  while (part_begin(rows_, along_y_, y + 1) <= row.ey) ++y;
+  while (part_begin(slabs_, along_z_, z + 1) <= row.ez) ++z;
+  return z * along_y_ + y;
+}
+
+std::vector<ElementPlace> Partition::touching(LinePlace line) const {
   const std::array<int, 2> in_y = elements_at(line.Y, degree_, rows_),
                            in_z = elements_at(line.Z, degree_, slabs_);
+  std::vector<ElementPlace> result;
+  for (int ez = in_z[0]; ez <= in_z[1]; ++ez)
+    for (int ey = in_y[0]; ey <= in_y[1]; ++ey) result.push_back({ey, ez});
+  return result;
+}
+
+std::vector<int> Partition::sharers(LinePlace line) const {
   std::vector<int> result;
-  for (const int ez : in_z)
-    for (const int ey : in_y) {
-      // Blocks are equal up to one row: the quotient is right or one too small.
-      int y = static_cast<int>(static_cast<long>(ey) * along_y_ / rows_);
-      int z = static_cast<int>(static_cast<long>(ez) * along_z_ / slabs_);
-      while (part_begin(rows_, along_y_, y + 1) <= ey) ++y;
-      while (part_begin(slabs_, along_z_, z + 1) <= ez) ++z;
-      result.push_back(z * along_y_ + y);
-    }
+  for (const ElementPlace row : touching(line)) result.push_back(find_rank(row));
   std::sort(result.begin(), result.end());
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
@@ -81,7 +89,8 @@ std::vector<LinePlace> Partition::shared_lines(int rank) const {
 
 long Partition::received_lines(int rank) const {
   long count = 0;
-  for (const LinePlace& line : shared_lines(rank)) count += static_cast<long>(sharers(line).size()) - 1;
+  for (const LinePlace& line : shared_lines(rank))
+    for (const ElementPlace row : touching(line)) count += find_rank(row) == rank ? 0 : 1;
   return count;
 }
 

@@ -19,6 +19,11 @@ struct LinePlace {
   bool operator==(const LinePlace&) const = default;
 };
 
+/// A row of elements along x.
+struct ElementPlace {
+  int ey = 0, ez = 0;
+};
+
 /// The rows of elements of a lattice, shared out among ranks in `along_y` x `along_z` blocks as equal as whole rows
 /// and slabs allow. Of all such divisions the one whose largest block takes the least time:
 ///
@@ -36,12 +41,15 @@ class Partition {
   int along_z() const { return along_z_; }
   const ElementBlock& block(int rank) const { return blocks_[static_cast<std::size_t>(rank)]; }
 
+  int find_rank(ElementPlace row) const;
+  /// Rows of elements that touch the line, by ez, then ey: one, two or four.
+  std::vector<ElementPlace> touching(LinePlace line) const;
   /// Ranks that hold the line, ascending.
   std::vector<int> sharers(LinePlace line) const;
   int owner(LinePlace line) const { return sharers(line).front(); }
   /// Lines that the rank shares with others, by Z, then Y.
   std::vector<LinePlace> shared_lines(int rank) const;
-  /// Lines that the rank receives in one exchange: a shared line once from each other sharer.
+  /// Lines that the rank receives in one exchange: a shared line once for each row of other ranks that touches it.
   long received_lines(int rank) const;
   /// Largest share of one rank: elements of its block times nx.
   long largest_block() const;

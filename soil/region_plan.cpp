@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 
 namespace easydyn::soil {
 namespace {
@@ -14,7 +15,8 @@ int part_begin(std::array<int, 2> range, int parts, int part) {
 
 int Region::slots() const {
   const int along_z = last.Z - first.Z + 1, along_y = last.Y - first.Y + 1;
-  return (low_y ? along_z : 0) + (high_y ? along_z : 0) + (low_z ? along_y : 0) + (high_z ? along_y : 0);
+  return 2 *
+         ((low_y ? along_z : 0) + (high_y ? along_z : 0) + (low_z ? along_y : 0) + (high_z ? along_y : 0));
 }
 
 RegionPlan::RegionPlan(const Partition& partition, int degree, int rows, int slabs, int rank, int threads)
@@ -68,44 +70,64 @@ void RegionPlan::add_region(Regions& regions, int thread, const ElementBlock& el
 void RegionPlan::make_seam_lines(const Partition& partition, int rank) {
   const auto key = [](LinePlace line) { return std::pair(line.Z, line.Y); };
   std::map<std::pair<int, int>, SeamLine> lines;
-  for (const Regions* const regions : {&shell_, &core_})
-    for (const auto& of_thread : *regions)
-      for (const Region& region : of_thread)
-        for (int Z = region.first.Z; Z <= region.last.Z; ++Z)
-          for (int Y = region.first.Y; Y <= region.last.Y;) {
-            if (const int slot = region.find_slot({Y, Z}); slot >= 0) {
-              SeamLine& line = lines[key({Y, Z})];
-              line.place = {Y, Z};
-              line.slot[static_cast<std::size_t>(line.parts++)] = slot;
-            }
-            // Within the region there are no slots.
-            const bool on_edge = Z == region.first.Z || Z == region.last.Z;
-            Y = on_edge || Y == region.last.Y ? Y + 1 : region.last.Y;
-          }
-
-  std::map<int, std::map<std::pair<int, int>, int>> number_of;  // of the shared lines of each rank
-  const auto find_number = [&](int of_rank, LinePlace place) {
-    auto& numbers = number_of[of_rank];
-    if (numbers.empty()) {
-      int number = 0;
-      for (const LinePlace& line : partition.shared_lines(of_rank)) numbers[key(line)] = number++;
-    }
-    return numbers.at(key(place));
+  // Parts that a rank sends: those of its rows to its shared lines, numbered in this order.
+  using PartNumbers = std::map<std::array<int, 4>, int>;
+  const auto number_parts = [&](int sender) {
+    PartNumbers numbers;
+    int number = 0;
+    for (const LinePlace& line : partition.shared_lines(sender))
+      for (const ElementPlace& row : partition.touching(line))
+        if (partition.find_rank(row) == sender) numbers[{line.Y, line.Z, row.ey, row.ez}] = number++;
+    return numbers;
   };
-  for (const LinePlace& place : partition.shared_lines(rank)) {
-    SeamLine& line = lines.at(key(place));
-    line.shared = shared_++;
-    line.first_received = received_lines();
+  std::map<int, PartNumbers> numbers_of;  // of the ranks that take part
+  const auto find_number = [&](int sender, LinePlace line, ElementPlace row) {
+    auto& numbers = numbers_of[sender];
+    if (numbers.empty()) numbers = number_parts(sender);
+    return numbers.at({line.Y, line.Z, row.ey, row.ez});
+  };
+  const auto find_region = [&](ElementPlace row) -> const Region& {
+    for (const Regions* const regions : {&shell_, &core_})
+      for (const auto& of_thread : *regions)
+        for (const Region& region : of_thread)
+          if (region.elements.has(row.ey, row.ez)) return region;
+    throw std::logic_error("a row of elements in no region");
+  };
+  const auto add_line = [&](LinePlace place) {
+    if (lines.contains(key(place))) return;
+    SeamLine line;
+    line.place = place;
     const std::vector<int> sharers = partition.sharers(place);
     line.is_owned = sharers.front() == rank;
-    for (const int other : sharers) {
-      if (other == rank) continue;
-      ++line.received;
-      if (other < rank) ++line.received_before;
-      graph_.wanted.push_back({other, find_number(other, place)});
+    for (const ElementPlace& row : partition.touching(place)) {
+      const auto part = static_cast<std::size_t>(line.parts++);
+      const int from = partition.find_rank(row);
+      line.slot[part] = line.exchanged[part] = -1;
+      if (from == rank)
+        line.slot[part] =
+            find_region(row).find_slot(place, row.ey * degree_ == place.Y, row.ez * degree_ == place.Z);
+      if (from != rank) {
+        line.exchanged[part] = received_lines();
+        graph_.wanted.push_back({from, find_number(from, place, row)});
+      } else if (sharers.size() > 1) {
+        line.exchanged[part] = find_number(rank, place, row);
+        ++graph_.own;
+      }
     }
-  }
-  graph_.own = shared_;
+    lines[key(place)] = line;
+  };
+  for (const Regions* const regions : {&shell_, &core_})
+    for (const auto& of_thread : *regions)
+      for (const Region& region : of_thread) {
+        for (int Z = region.first.Z; Z <= region.last.Z; ++Z) {
+          if (region.low_y) add_line({region.first.Y, Z});
+          if (region.high_y) add_line({region.last.Y, Z});
+        }
+        for (int Y = region.first.Y; Y <= region.last.Y; ++Y) {
+          if (region.low_z) add_line({Y, region.first.Z});
+          if (region.high_z) add_line({Y, region.last.Z});
+        }
+      }
   for (const auto& [unused, line] : lines) seam_lines_.push_back(line);
 }
 

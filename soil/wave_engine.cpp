@@ -76,16 +76,30 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
   loaded_row_.assign(lines_y(), 0);
 }
 
-/// Memory of the seam slots: the first part of a line shared with other ranks lies where it is sent from.
+/// Memory of the seam slots: parts of lines shared with other ranks lie where they are sent from.
 template <class T>
 void WaveEngine<T>::make_seams() {
-  seam_.assign(static_cast<std::size_t>(plan_.slots()) * line_size(), T(0));
-  sent_.assign(plan_.shared_lines() * line_size(), T(0));
-  received_.assign(plan_.received_lines() * line_size(), T(0));
-  for (int slot = 0; slot < plan_.slots(); ++slot) slot_line_.push_back(seam_.data() + slot * line_size());
+  const std::size_t size = line_size();
+  std::size_t kept = 0;
   for (const SeamLine& line : plan_.seam_lines())
-    if (line.shared >= 0) slot_line_[line.slot[0]] = sent_.data() + line.shared * line_size();
-  if (plan_.has_shell()) halo_ = ranks_->make_halo(plan_.graph(line_size() * sizeof(T)));
+    for (int part = 0; part < line.parts; ++part) kept += line.exchanged[part] < 0 ? 1 : 0;
+  seam_.assign(kept * size, T(0));
+  sent_.assign(plan_.sent_lines() * size, T(0));
+  received_.assign(plan_.received_lines() * size, T(0));
+  slot_line_.assign(plan_.slots(), nullptr);
+  T* next = seam_.data();
+  for (const SeamLine& line : plan_.seam_lines())
+    for (int part = 0; part < line.parts; ++part) {
+      if (line.slot[part] < 0) continue;
+      T*& place = slot_line_[line.slot[part]];
+      if (line.exchanged[part] >= 0) {
+        place = sent_.data() + line.exchanged[part] * size;
+      } else {
+        place = next;
+        next += size;
+      }
+    }
+  if (plan_.has_shell()) halo_ = ranks_->make_halo(plan_.graph(size * sizeof(T)));
 }
 
 template <class T>
@@ -273,7 +287,8 @@ void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const F
             tile.w[k * n + j] = line;
           }
           T* f;
-          if (const int seam = region.find_slot({Y, Z}); seam >= 0)
+          const int seam = region.find_slot({Y, Z}, j == 0, k == 0);
+          if (seam >= 0)
             f = slot_line_[seam];
           else if (k == 0)
             f = plane_low + (Y - r0 * N_) * size;
@@ -282,7 +297,7 @@ void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const F
           else
             f = scratch.f.data() + slot * size;
           tile.f[k * n + j] = f;
-          tile.add[k * n + j] = (k == 0 && ez > s0) || (j == 0 && ey > r0);
+          tile.add[k * n + j] = seam < 0 && ((k == 0 && ez > s0) || (j == 0 && ey > r0));
         }
       // Soon needed: what finishes this row, then the field of the next row (or of the first one, a slab up).
       tile.ahead_count = 0;
@@ -323,31 +338,13 @@ void WaveEngine<T>::finish_seams(int thread, const Finish& finish) {
   T* const total = scratch.f.data();
   for (std::size_t s = count * thread / team_.size(); s < count * (thread + 1) / team_.size(); ++s) {
     const SeamLine& line = plan_.seam_lines()[s];
-    T* f = slot_line_[line.slot[0]];
-    if (line.shared < 0) {
-      add_parts(line);
-    } else {  // by rank
-      const T* const received = received_.data() + line.first_received * size;
-      std::array<const T*, 4> part{};
-      for (int r = 0; r < line.received; ++r)
-        part[r < line.received_before ? r : r + 1] = received + r * size;
-      part[line.received_before] = f;
-      for (std::size_t p = 0; p < size; ++p) total[p] = part[0][p] + part[1][p];
-      for (int r = 2; r <= line.received; ++r)
-        for (std::size_t p = 0; p < size; ++p) total[p] += part[r][p];
-      f = total;
-    }
-    finish(line.is_owned ? scratch.sums : scratch.sums_of_others, line.place.Y, line.place.Z, f);
-  }
-}
-
-/// Adds what the regions of this rank have to the line where its first part is.
-template <class T>
-void WaveEngine<T>::add_parts(const SeamLine& line) {
-  T* const sum = slot_line_[line.slot[0]];
-  for (int part = 1; part < line.parts; ++part) {
-    const T* const more = slot_line_[line.slot[part]];
-    for (std::size_t p = 0; p < line_size(); ++p) sum[p] += more[p];
+    std::array<const T*, 4> part{};
+    for (int i = 0; i < line.parts; ++i)
+      part[i] = line.slot[i] >= 0 ? slot_line_[line.slot[i]] : received_.data() + line.exchanged[i] * size;
+    for (std::size_t p = 0; p < size; ++p) total[p] = part[0][p] + part[1][p];
+    for (int i = 2; i < line.parts; ++i)
+      for (std::size_t p = 0; p < size; ++p) total[p] += part[i][p];
+    finish(line.is_owned ? scratch.sums : scratch.sums_of_others, line.place.Y, line.place.Z, total);
   }
 }
 
@@ -361,8 +358,6 @@ void WaveEngine<T>::run_sweep(Field field, const Finish& finish) {
   };
   if (halo_) {
     run(plan_.shell());
-    for (const SeamLine& line : plan_.seam_lines())
-      if (line.shared >= 0 && line.parts > 1) add_parts(line);
     halo_->begin(sent_.data(), received_.data());
     is_exchanging_ = true;
   }

@@ -147,7 +147,6 @@ class WaveEngine {
   }
   template <class Finish>
   void sweep(int thread, const Region& region, Field field, const Finish& finish);
-  void add_parts(const SeamLine& line);
   template <class Finish>
   void finish_seams(int thread, const Finish& finish);
   template <class Finish>

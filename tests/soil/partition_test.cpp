@@ -56,7 +56,13 @@ TEST(Partition, NamesTheSharersOfEachLine) {
           expected.push_back(r);
       }
       ASSERT_EQ(partition.sharers({Y, Z}), expected) << Y << " " << Z;
-      for (const int r : expected) received[r] += static_cast<long>(expected.size()) - 1;
+      // One line for each row of elements of another rank that touches it.
+      for (int ez = 0; ez < 6; ++ez)
+        for (int ey = 0; ey < 7; ++ey) {
+          const bool touches = std::abs(2 * Y - (2 * ey + 1) * degree) <= degree &&
+                               std::abs(2 * Z - (2 * ez + 1) * degree) <= degree;
+          for (const int r : expected) received[r] += touches && !partition.block(r).has(ey, ez) ? 1 : 0;
+        }
     }
   for (int r = 0; r < 6; ++r) EXPECT_EQ(partition.received_lines(r), received[r]);
 }
