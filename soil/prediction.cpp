@@ -245,7 +245,8 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
     fmt::print(out, "          so short because of layer {} \"{}\", which is only {} m thick\n", layer + 1,
                thin.name, thin.thickness);
   }
-  fmt::print(out, "expected  {}\n", results::format_duration(summary.expected_time));
+  fmt::print(out, "expected  {}, {:.3g} ms per step\n", results::format_duration(summary.expected_time),
+             1e3 * summary.expected_time / static_cast<double>(summary.steps));
   std::fflush(out);
 }
 
