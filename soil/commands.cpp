@@ -6,8 +6,8 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/layered_prediction.hpp"
-#include "soil/site.hpp"
 #include "soil/ranks.hpp"
+#include "soil/site.hpp"
 #include "soil/stop_signal.hpp"
 
 namespace easydyn::soil {
