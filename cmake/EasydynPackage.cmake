@@ -17,6 +17,9 @@ install(EXPORT easydyn NAMESPACE easydyn:: FILE easydynTargets.cmake DESTINATION
 if(TARGET soil_program)
   install(TARGETS soil_program)
 endif()
+if(TARGET soil_mpi)  # soil_program finds it there
+  install(TARGETS soil_mpi LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/easydyn-2)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/easydynConfig.cmake.in

@@ -6,6 +6,7 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/ranks.hpp"
 #include "soil/site.hpp"
 #include "soil/stop_signal.hpp"
 
@@ -67,14 +68,17 @@ RunControl make_control(const fs::path& checkpoint) {
   return control;
 }
 
-int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on) {
+int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on, Ranks* ranks) {
   const StopSignal signal;
   try {
     run();
     return 0;
   } catch (const RunStopped& stopped) {
-    fmt::print(stderr, "soil: {}: {}\nTo go on: {}\n", StopSignal::name(), stopped.what(), command_to_go_on);
-    return 128 + StopSignal::number();  // as a shell says it
+    double number = StopSignal::number();
+    if (ranks) ranks->maximise(&number, 1);  // one of them has heard it
+    fmt::print(stderr, "soil: {}: {}\nTo go on: {}{}\n", StopSignal::name_of(static_cast<int>(number)),
+               stopped.what(), ranks ? fmt::format("mpirun -n {} ", ranks->size()) : "", command_to_go_on);
+    return 128 + static_cast<int>(number);  // as a shell says it
   }
 }
 

@@ -34,7 +34,8 @@ DampingModel find_damping_model(const std::string& name);
 /// A run with this checkpoint that SIGINT and SIGTERM stop, and whose warnings go to standard error.
 RunControl make_control(const std::filesystem::path& checkpoint);
 /// What `run` does, with an end before the end on SIGINT and SIGTERM. @returns the exit status
-int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on);
+int run_stoppable(const std::function<void()>& run, const std::string& command_to_go_on,
+                  class Ranks* ranks = nullptr);
 /// The semi-analytical motion beside a prediction as a table.
 void print_comparison(const Vibrations& vibrations);
 

@@ -14,8 +14,10 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/nearest_name.hpp"
+#include "soil/agreement.hpp"
 #include "soil/commands.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/parallel_run.hpp"
 #include "soil/prediction.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
@@ -42,6 +44,9 @@ Files (docs/formats.md describes them):
   snapshots/        pictures of planes of the ground, if the site file asks for them: open the .pvd in ParaView
   checkpoint.bin    the state of a run that is not complete. Ctrl-C, SIGTERM and a crash of the machine lose little:
                     the same command with --restart goes on and gives the same bits. Removed at the end.
+
+Several processes (docs/parallel.md): mpirun -n 4 soil run ... shares the ground out among 4 ranks; each then has its
+part of the checkpoint and of the snapshots.
 
 Nothing is claimed above the highest frequency of the site file: the loads are passed unchanged up to it and
 fade out to nothing at 1.25 times it, and so does the motion in vibrations.h5.
@@ -135,9 +140,10 @@ RunControl make_run_control(const RunArguments& arguments) {
   return control;
 }
 
-void run(RunArguments& arguments, const std::string& command_line) {
-  const fs::path result = arguments.dry_run ? fs::path() : prepare_result(arguments.output);
-  if (!arguments.dry_run && !arguments.restart) {
+// Names of an earlier run's files change before this one starts.
+void set_earlier_run_aside(const RunArguments& arguments) {
+  prepare_result(arguments.output);
+  if (!arguments.restart) {
     bool had_checkpoint = false;
     for (const fs::path& checkpoint : checkpoints_of(arguments.output)) {
       had_checkpoint = set_aside(checkpoint) || had_checkpoint;
@@ -150,6 +156,10 @@ void run(RunArguments& arguments, const std::string& command_line) {
           (arguments.output / "checkpoint.bin").string());
     }
   }
+}
+
+void run(RunArguments& arguments, const std::string& command_line, Ranks* ranks) {
+  if (!arguments.dry_run) act_on_first(ranks, [&] { set_earlier_run_aside(arguments); });
   Site site = read_site(arguments.site);
   add_snapshots(site, arguments.snapshot_step);
   warn_of_unusual_values(arguments.site, site);
@@ -158,7 +168,7 @@ void run(RunArguments& arguments, const std::string& command_line) {
   arguments.options.half_model = !arguments.full_model;
   WaveSolver solver = [&] {
     try {
-      return make_solver(site, loads, arguments.options);
+      return make_solver(site, loads, arguments.options, ranks);
     } catch (const ModelError& error) {  // site and loads do not fit: say which files
       throw ModelError(
           fmt::format("{}, {}: {}", arguments.site.string(), join_names(arguments.loads), error.what()));
@@ -175,14 +185,22 @@ void run(RunArguments& arguments, const std::string& command_line) {
     semi_analytical = compute_semi_analytical_motion(site, loads, find_ground_damping(arguments.damping),
                                                      arguments.options.threads);
   }
-  if (!arguments.restart) set_aside(control.snapshots);
-  if (!site.snapshots.empty()) make_folder(control.snapshots);
+  act_on_first(ranks, [&] {
+    if (!arguments.restart) set_aside(control.snapshots);
+    if (!site.snapshots.empty()) make_folder(control.snapshots);
+  });
   Vibrations vibrations = predict_vibrations(site, loads, solver, stdout, control);
   vibrations.semi_analytical = std::move(semi_analytical);
-  write_vibrations(result, vibrations,
-                   {.program = "soil", .command = command_line, .convention = result_convention});
-  std::error_code ignored;
-  for (const fs::path& checkpoint : checkpoints_of(arguments.output)) fs::remove(checkpoint, ignored);
+  const fs::path result = arguments.output / "vibrations.h5";
+  act_on_first(ranks, [&] {
+    write_vibrations(result, vibrations,
+                     {.program = "soil", .command = command_line, .convention = result_convention});
+    std::error_code ignored;
+    for (const fs::path& checkpoint : checkpoints_of(arguments.output)) {
+      fs::remove(checkpoint, ignored);
+      remove_rank_checkpoints(checkpoint, 0);
+    }
+  });
   print_indicators(stdout, vibrations);
   if (arguments.verify) print_comparison(vibrations);
   fmt::print("\n{}\n", result.string());
@@ -208,7 +226,7 @@ std::string find_fault_of_command(const std::string& word) {
                      nearest.empty() ? "" : ", did you mean \"" + nearest + "\"?");
 }
 
-int run_program(int argc, char** argv) {
+int run_program(int argc, char** argv, ParallelRun& parallel) {
   if (argc > 1) {
     if (const std::string fault = find_fault_of_command(argv[1]); !fault.empty()) {
       fmt::print(stderr, "soil: {}\n", fault);
@@ -238,14 +256,26 @@ int run_program(int argc, char** argv) {
   const std::string command_line = results::join_command_line(argc, argv);
   try {
     if (app.got_subcommand("run")) {
-      return run_stoppable([&] { run(arguments, command_line); },
-                           command_line + (arguments.restart ? "" : " --restart"));
+      return run_stoppable([&] { run(arguments, command_line, parallel.ranks()); },
+                           command_line + (arguments.restart ? "" : " --restart"), parallel.ranks());
     }
+    if (parallel.ranks())
+      throw InputError("only soil run shares its work among ranks: start this command without mpirun");
     if (app.got_subcommand("mobility")) return mobility(command_line);
     if (app.got_subcommand("predict")) return predict(command_line);
     write_report(report_folder);
     return 0;
   } catch (const std::exception& error) {
+    parallel.fail(fmt::format("soil: {}\n", error.what()));
+    return 1;
+  }
+}
+
+int run_on_ranks(int argc, char** argv) {
+  try {
+    ParallelRun parallel;
+    return run_program(argc, argv, parallel);
+  } catch (const std::exception& error) {  // no ranks
     fmt::print(stderr, "soil: {}\n", error.what());
     return 1;
   }
@@ -255,5 +285,5 @@ int run_program(int argc, char** argv) {
 }  // namespace easydyn::soil
 
 int main(int argc, char** argv) {
-  return easydyn::soil::run_program(argc, argv);
+  return easydyn::soil::run_on_ranks(argc, argv);
 }

@@ -118,12 +118,13 @@ int find_dictating_layer(const Site& site, const Lattice& lattice) {
 
 }  // namespace
 
-WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options) {
+WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options,
+                       Ranks* ranks) {
   SurfaceLoads limited = loads;
   const auto intervals = static_cast<double>(loads.time.size() - 1);
   const double step = (loads.time(loads.time.size() - 1) - loads.time(0)) / intervals;
   limited.force = limit_band(loads.force, step, site.highest_frequency);
-  return WaveSolver(site, limited, options);
+  return WaveSolver(site, limited, options, ranks);
 }
 
 void add_settings(std::vector<Parameter>& rows, const Site& site) {
@@ -232,13 +233,20 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
         static_cast<double>(low->dofs()) / 1e6, size(low->x), size(low->y), size(low->z));
   }
   fmt::print(out, "memory    {}\n", format_bytes(summary.memory));
+  if (const int ranks = summary.ranks_y * summary.ranks_z; ranks > 1) {
+    fmt::print(out,
+               "ranks     {}: {} along y x {} along z, {} thread{} each, up to {} per step from others\n",
+               ranks, summary.ranks_y, summary.ranks_z, summary.threads, summary.threads == 1 ? "" : "s",
+               format_bytes(summary.halo));
+  }
   fmt::print(out, "steps     {} of {:.4g} ms\n", summary.steps, 1e3 * summary.time_step);
   if (const int layer = find_dictating_layer(site, lattice); layer >= 0) {
     const Layer& thin = site.layers[static_cast<std::size_t>(layer)];
     fmt::print(out, "          so short because of layer {} \"{}\", which is only {} m thick\n", layer + 1,
                thin.name, thin.thickness);
   }
-  fmt::print(out, "expected  {}\n", results::format_duration(summary.expected_time));
+  fmt::print(out, "expected  {}, {:.3g} ms per step\n", results::format_duration(summary.expected_time),
+             1e3 * summary.expected_time / static_cast<double>(summary.steps));
   std::fflush(out);
 }
 

@@ -13,8 +13,10 @@ namespace easydyn::soil {
 /// Solver of the waves that these loads send through the ground of this site. The loads are first
 /// limited by limit_band(): unchanged up to Site::highest_frequency, nothing from 1.25 times it. Nothing above
 /// Site::highest_frequency is claimed.
+/// @param ranks  see WaveSolver
 /// @throws ModelError if site, loads and options do not fit
-WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
+WaveSolver make_solver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {},
+                       Ranks* ranks = nullptr);
 
 /// Runs the solver and draws up the indicators. Progress goes to `out` (nullptr: silent).
 /// @param control  what accompanies the run; its `progress` is not used

@@ -30,6 +30,20 @@ inline std::filesystem::path low_checkpoint_of(const std::filesystem::path& chec
   return low;
 }
 
+/// The file of a rank: checkpoint.bin of the first one, checkpoint.rank3.step4200.bin of another one.
+inline std::filesystem::path rank_checkpoint_of(const std::filesystem::path& checkpoint, int rank,
+                                                long step) {
+  if (rank == 0) return checkpoint;
+  std::filesystem::path file = checkpoint;
+  file.replace_filename(checkpoint.stem().string() + ".rank" + std::to_string(rank) + ".step" +
+                        std::to_string(step) + checkpoint.extension().string());
+  return file;
+}
+
+/// Removes the files of one rank beside a checkpoint, of all ranks but the first if `rank` is 0, except `kept`.
+void remove_rank_checkpoints(const std::filesystem::path& checkpoint, int rank,
+                             const std::filesystem::path& kept = {});
+
 /// A run ended because it was asked to; what() says where and how to go on.
 class RunStopped : public Error {
  public:

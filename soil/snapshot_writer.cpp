@@ -35,15 +35,26 @@ Axis make_axis(const std::vector<double>& lines, const std::array<int, 2>& spong
   return axis;
 }
 
-std::string file_name(const std::string& plane, long row) {
-  return fmt::format("{}/{:05d}.vtu", plane, row);
+/// Nodes of an axis, first <= node <= last.
+struct NodeRange {
+  int first, last;
+};
+
+/// Nodes of the undamped range of an axis that lie between two element boundaries.
+NodeRange nodes_between(const Axis& axis, const std::array<int, 2>& elements, int degree) {
+  return {std::max(axis.first, elements[0] * degree), std::min(axis.last, elements[1] * degree)};
 }
 
 }  // namespace
 
 SnapshotWriter::SnapshotWriter(const std::vector<Snapshot>& snapshots, const Lattice& lattice,
                                const OutputTimes& times)
-    : times_(times) {
+    : SnapshotWriter(snapshots, lattice, times, Partition(lattice.ny(), lattice.nz(), lattice.degree, 1), 0) {
+}
+
+SnapshotWriter::SnapshotWriter(const std::vector<Snapshot>& snapshots, const Lattice& lattice,
+                               const OutputTimes& times, const Partition& partition, int rank)
+    : times_(times), partition_(partition), rank_(rank) {
   for (const Snapshot& snapshot : snapshots) {
     if (!(snapshot.step >= times.step * (1 - 1e-9)))
       throw ModelError(fmt::format("snapshot \"{}\": step = {} s, must be >= {:.6g} s, the output step",
@@ -88,26 +99,52 @@ void SnapshotWriter::make_plane(const Snapshot& snapshot, const Lattice& lattice
   const int first_axis = snapshot.axis == 0 ? 1 : 0, second_axis = snapshot.axis == 2 ? 1 : 2;
   const Axis &a = axes[static_cast<std::size_t>(first_axis)],
              &b = axes[static_cast<std::size_t>(second_axis)];
-  const int count = a.last - a.first + 1;
-  for (int j = b.first; j <= b.last; ++j)
-    for (int i = a.first; i <= a.last; ++i) {
-      std::array<int, 3> node{};
-      std::array<double, 3> position{};
-      node[static_cast<std::size_t>(first_axis)] = i;
-      node[static_cast<std::size_t>(second_axis)] = j;
-      position[static_cast<std::size_t>(snapshot.axis)] = snapshot.place;
-      position[static_cast<std::size_t>(first_axis)] = a.positions[static_cast<std::size_t>(i)];
-      position[static_cast<std::size_t>(second_axis)] = b.positions[static_cast<std::size_t>(j)];
-      plane.nodes.push_back({node[0], node[1], node[2]});
-      for (const double p : position) plane.mesh.points.push_back(static_cast<float>(p));
-      if (i == a.last || j == b.last) continue;
-      const int corner_point = (j - b.first) * count + i - a.first;
-      for (const int point : {corner_point, corner_point + 1, corner_point + count + 1, corner_point + count})
-        plane.mesh.quads.push_back(point);
-    }
+  plane.points =
+      static_cast<std::size_t>(a.last - a.first + 1) * static_cast<std::size_t>(b.last - b.first + 1);
+  plane.quads = static_cast<std::size_t>(a.last - a.first) * static_cast<std::size_t>(b.last - b.first);
+  // The element across the plane that holds all nodes across it.
+  const std::array<int, 3> counts = {lattice.nx(), lattice.ny(), lattice.nz()};
+  const int element =
+      std::min(plane.across.front().first / degree, counts[static_cast<std::size_t>(snapshot.axis)] - 1);
+  for (int rank = 0; rank < partition_.ranks(); ++rank) {
+    const ElementBlock& block = partition_.block(rank);
+    const std::array<std::array<int, 2>, 3> elements = {{{0, lattice.nx()}, block.rows, block.slabs}};
+    const auto& [low, high] = elements[static_cast<std::size_t>(snapshot.axis)];
+    const NodeRange i = nodes_between(a, elements[static_cast<std::size_t>(first_axis)], degree),
+                    j = nodes_between(b, elements[static_cast<std::size_t>(second_axis)], degree);
+    if (element < low || element >= high || i.first >= i.last || j.first >= j.last) continue;
+    plane.pieces.push_back(rank);
+    if (rank != rank_) continue;
+    const int count = i.last - i.first + 1;
+    for (int q = j.first; q <= j.last; ++q)
+      for (int p = i.first; p <= i.last; ++p) {
+        std::array<int, 3> node{};
+        std::array<double, 3> position{};
+        node[static_cast<std::size_t>(first_axis)] = p;
+        node[static_cast<std::size_t>(second_axis)] = q;
+        position[static_cast<std::size_t>(snapshot.axis)] = snapshot.place;
+        position[static_cast<std::size_t>(first_axis)] = a.positions[static_cast<std::size_t>(p)];
+        position[static_cast<std::size_t>(second_axis)] = b.positions[static_cast<std::size_t>(q)];
+        plane.nodes.push_back({node[0], node[1], node[2]});
+        for (const double x : position) plane.mesh.points.push_back(static_cast<float>(x));
+        if (p == i.last || q == j.last) continue;
+        const int corner_point = (q - j.first) * count + p - i.first;
+        for (const int point :
+             {corner_point, corner_point + 1, corner_point + count + 1, corner_point + count})
+          plane.mesh.quads.push_back(point);
+      }
+  }
   plane.displacement.assign(plane.mesh.points.size(), 0);
   plane.velocity.assign(plane.mesh.points.size(), 0);
   planes_.push_back(std::move(plane));
+}
+
+std::string SnapshotWriter::picture_name(const Plane& plane, long row) const {
+  return fmt::format("{}/{:05d}.{}", plane.name, row, has_pieces() ? "pvtu" : "vtu");
+}
+
+std::string SnapshotWriter::piece_name(const Plane& plane, long row, int rank) const {
+  return has_pieces() ? fmt::format("{}/{:05d}.rank{}.vtu", plane.name, row, rank) : picture_name(plane, row);
 }
 
 double SnapshotWriter::size() const {
@@ -115,8 +152,7 @@ double SnapshotWriter::size() const {
   for (const Plane& plane : planes_) {
     const auto pictures = static_cast<double>(plane.pictures());
     const double line_of_index = 60 + static_cast<double>(plane.name.size());
-    bytes += pictures * (results::compute_vtu_size(plane.mesh.point_count(), plane.mesh.quad_count(), 2) +
-                         line_of_index);
+    bytes += pictures * (results::compute_vtu_size(plane.points, plane.quads, 2) + line_of_index);
   }
   return bytes;
 }
@@ -131,7 +167,7 @@ std::string SnapshotWriter::description() const {
   std::string text;
   for (const Plane& plane : planes_)
     text += fmt::format("{}\"{}\": {} points, {} pictures, one every {:.4g} ms", text.empty() ? "" : "\n",
-                        plane.name, plane.mesh.point_count(), plane.pictures(),
+                        plane.name, plane.points, plane.pictures(),
                         1e3 * times_.step * static_cast<double>(plane.every));
   return text;
 }
@@ -169,11 +205,20 @@ void SnapshotWriter::finish(long row, const Field& velocity) {
     add(plane, velocity, 0.5, plane.velocity);
     std::error_code error;
     std::filesystem::create_directories(folder_ / plane.name, error);
-    results::write_vtu(folder_ / file_name(plane.name, row), plane.mesh,
-                       {{"velocity", plane.velocity}, {"displacement", plane.displacement}}, time_of(row));
+    const std::vector<results::PointVectors> vectors = {{"velocity", plane.velocity},
+                                                        {"displacement", plane.displacement}};
+    if (!plane.nodes.empty())
+      results::write_vtu(folder_ / piece_name(plane, row, rank_), plane.mesh, vectors, time_of(row));
+    if (rank_ > 0) continue;
+    if (has_pieces()) {
+      std::vector<std::string> pieces;  // beside the index
+      for (const int rank : plane.pieces)
+        pieces.push_back(std::filesystem::path(piece_name(plane, row, rank)).filename().string());
+      results::write_pvtu(folder_ / picture_name(plane, row), pieces, {"velocity", "displacement"});
+    }
     std::vector<results::PvdEntry> entries;  // also those before a restart
     for (long r = plane.first; r <= row; r += plane.every)
-      entries.push_back({time_of(r), file_name(plane.name, r)});
+      entries.push_back({time_of(r), picture_name(plane, r)});
     results::write_pvd(folder_ / (plane.name + ".pvd"), entries);
   }
 }

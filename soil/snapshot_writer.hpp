@@ -8,6 +8,7 @@
 
 #include "easydyn/results/vtu_file.hpp"
 #include "soil/lattice.hpp"
+#include "soil/partition.hpp"
 #include "soil/site.hpp"
 
 namespace easydyn::soil {
@@ -23,6 +24,9 @@ struct OutputTimes {
 ///     surface.pvd               index of the series, renewed with every picture
 ///     surface/00012.vtu         the picture of output time 12: `velocity` [m/s] and `displacement` [m], z up
 ///
+/// Of several ranks each writes the piece of the ground that it holds, surface/00012.rank3.vtu, and the first one
+/// surface/00012.pvtu, which joins them; no rank needs anything from another one.
+///
 /// The points of a picture are the nodes of the lattice in the undamped ground; across the plane the motion is
 /// interpolated with the shape functions. Numbers are in single precision. Half of a symmetric ground is shown.
 class SnapshotWriter {
@@ -34,6 +38,8 @@ class SnapshotWriter {
   /// @throws ModelError if a plane lies outside the undamped ground, its step is shorter than that of the output
   ///         or no output time lies between its begin and end
   SnapshotWriter(const std::vector<Snapshot>& snapshots, const Lattice& lattice, const OutputTimes& times);
+  SnapshotWriter(const std::vector<Snapshot>& snapshots, const Lattice& lattice, const OutputTimes& times,
+                 const Partition& partition, int rank);
 
   double size() const;              ///< of all files [byte]
   long files() const;               ///< number of pictures
@@ -57,6 +63,8 @@ class SnapshotWriter {
     std::vector<std::pair<int, double>> across;  // node and weight
     std::vector<Node> nodes;
     results::QuadMesh mesh;
+    std::size_t points = 0, quads = 0;    // of the whole picture
+    std::vector<int> pieces;              // ranks that hold one
     long first = 0, last = 0, every = 1;  // rows
     std::vector<float> displacement, velocity;
 
@@ -64,9 +72,15 @@ class SnapshotWriter {
     long pictures() const { return (last - first) / every + 1; }
   };
   void make_plane(const Snapshot& snapshot, const Lattice& lattice);
+  bool has_pieces() const { return partition_.ranks() > 1; }
+  /// Of all ranks together, seen from the folder.
+  std::string picture_name(const Plane& plane, long row) const;
+  std::string piece_name(const Plane& plane, long row, int rank) const;
   static void add(const Plane& plane, const Field& field, double factor, std::vector<float>& out);
 
   OutputTimes times_;
+  Partition partition_;
+  int rank_;
   std::filesystem::path folder_;
   std::vector<Plane> planes_;
 };

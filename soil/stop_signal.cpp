@@ -37,8 +37,8 @@ int StopSignal::number() {
   return signal_that_came;
 }
 
-std::string StopSignal::name() {
-  return signal_that_came == SIGINT ? "SIGINT" : signal_that_came == SIGTERM ? "SIGTERM" : "";
+std::string StopSignal::name_of(int number) {
+  return number == SIGINT ? "SIGINT" : number == SIGTERM ? "SIGTERM" : "";
 }
 
 }  // namespace easydyn::soil

@@ -13,8 +13,8 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  static int number();        ///< of the signal that came; 0: none
-  static std::string name();  ///< "SIGINT" or "SIGTERM"; empty: none
+  static int number();                     ///< of the signal that came; 0: none
+  static std::string name_of(int number);  ///< "SIGINT" or "SIGTERM"; empty: another one or none
 };
 
 }  // namespace easydyn::soil

@@ -10,47 +10,6 @@ namespace easydyn::soil {
 
 namespace {
 
-/// Assembled lumped mass of a line of elements: node distances weighted by quadrature, times `factor` of
-/// each.
-std::vector<double> assemble_mass(const GllRule& rule, const std::vector<double>& lines,
-                                  const std::vector<double>& factor) {
-  const int N = rule.degree, n_elements = static_cast<int>(lines.size()) - 1;
-  std::vector<double> mass(n_elements * N + 1, 0.0);
-  for (int e = 0; e < n_elements; ++e)
-    for (int i = 0; i <= N; ++i)
-      mass[e * N + i] += factor[e] * rule.weights(i) * (lines[e + 1] - lines[e]) / 2;
-  return mass;
-}
-
-std::vector<double> node_positions(const GllRule& rule, const std::vector<double>& lines) {
-  const int N = rule.degree, n_elements = static_cast<int>(lines.size()) - 1;
-  std::vector<double> position(n_elements * N + 1);
-  for (int e = 0; e < n_elements; ++e)
-    for (int i = 0; i <= N; ++i)
-      position[e * N + i] = lines[e] + (lines[e + 1] - lines[e]) * (rule.points(i) + 1) / 2;
-  return position;
-}
-
-/// Sponge factors of the nodes of one axis: `strength` [m/s] / length is the damping at the outer edges.
-void make_sponge(const std::vector<double>& position, std::array<double, 2> interior, double strength,
-                 double dt, std::vector<double>& decay, std::vector<double>& gain) {
-  decay.assign(position.size(), 1.0);
-  gain.assign(position.size(), 1.0);
-  for (std::size_t p = 0; p < position.size(); ++p) {
-    double s = 0, length = 1;
-    if (position[p] < interior[0]) {
-      length = interior[0] - position.front();
-      s = (interior[0] - position[p]) / length;
-    } else if (position[p] > interior[1]) {
-      length = position.back() - interior[1];
-      s = (position[p] - interior[1]) / length;
-    }
-    const double a = strength / length * s * s * dt / 2;
-    decay[p] = (1 - a) / (1 + a);
-    gain[p] = 1 / (1 + a);
-  }
-}
-
 template <class T>
 double sum_of(pack<T> value) {
   double sum = 0;
@@ -67,19 +26,29 @@ int padded_lanes(int nx, int lanes) {
 template <class T>
 WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMaterial>& materials,
                           const std::vector<double>& relaxation_rates, const EngineBoundary& boundary,
-                          int threads)
+                          int threads, Ranks* ranks)
     : lattice_(lattice),
       materials_(materials),
       rates_(relaxation_rates),
       boundary_(boundary),
-      team_(std::clamp(threads, 1, lattice.ny())),
+      ranks_(ranks),
+      rank_(ranks ? ranks->rank() : 0),
+      partition_(lattice.ny(), lattice.nz(), lattice.degree, ranks ? ranks->size() : 1),
+      part_(partition_.block(rank_)),
+      team_(std::clamp(threads, 1, part_.rows[1] - part_.rows[0])),
+      plan_(partition_, lattice.degree, lattice.ny(), lattice.nz(), rank_, team_.size()),
       tile_function_(find_tile_function<T>(lattice.degree)),
       element_function_(find_element_function<T>(lattice.degree)),
       N_(lattice.degree),
       stride_(padded_lanes(lattice.nx(), Pack<T>::lanes)),
       nX_(lattice.nx() * N_ + 1),
       nY_(lattice.ny() * N_ + 1),
-      nZ_(lattice.nz() * N_ + 1) {
+      nZ_(lattice.nz() * N_ + 1),
+      first_{part_.rows[0] * N_, part_.slabs[0] * N_},
+      last_{part_.rows[1] * N_, part_.slabs[1] * N_},
+      axes_(lattice, materials, stride_),
+      edge_(lattice, materials, boundary),
+      blocks_(lattice, materials, axes_, stride_, part_) {
   for (int ez = 0; ez < lattice.nz(); ++ez)
     slabs_.push_back({lattice.layer[ez], lattice.z[ez + 1] - lattice.z[ez],
                       ez > 0 && lattice.layer[ez - 1] == lattice.layer[ez],
@@ -88,226 +57,91 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
     if (material.beta > 0) step_field_ = Field::viscous;
   if (!rates_.empty()) step_field_ = Field::memory;
 
-  const int threads_used = team_.size();
-  for (int t = 0; t <= threads_used; ++t)
-    first_row_.push_back(static_cast<int>(static_cast<long>(lattice.ny()) * t / threads_used));
-  scratch_.resize(threads_used);
+  scratch_.resize(team_.size());
   const int n = N_ + 1;
-  for (int t = 0; t < threads_used; ++t) {
-    Scratch& s = scratch_[t];
+  for (Scratch& s : scratch_) {
     s.w.assign(2 * guard + n * n * line_size(), T(0));
     s.f.assign(guard + n * n * line_size(), T(0));
-    const int lines = (first_row_[t + 1] - first_row_[t]) * N_ + 1;
+    const int lines = plan_.most_rows() * N_ + 1;
     for (auto& plane : s.plane) plane.assign(guard + lines * line_size(), T(0));
-    if (t > 0) {
-      s.seam_low.assign(nZ_ * line_size(), T(0));
-      s.seam_high.assign(nZ_ * line_size(), T(0));
-    }
   }
+  make_seams();
 
-  const std::size_t size = 2 * guard + static_cast<std::size_t>(nZ_) * nY_ * line_size();
+  const std::size_t size = 2 * guard + static_cast<std::size_t>(lines_z()) * lines_y() * line_size();
   u_.assign(size, T(0));
   v_.assign(size, T(0));
   zeta_.resize(rates_.size());
   for (auto& zeta : zeta_) zeta.assign(size, T(0));
-  load_.assign(guard + nY_ * line_size(), T(0));
-  loaded_row_.assign(nY_, 0);
-  make_line_tables();
-  make_boundary_tables();
-  if (!lattice_.blocks.empty()) make_block_tables();
+  if (has_surface()) load_.assign(guard + lines_y() * line_size(), T(0));
+  loaded_row_.assign(lines_y(), 0);
+}
+
+/// Memory of the seam slots: parts of lines shared with other ranks lie where they are sent from.
+template <class T>
+void WaveEngine<T>::make_seams() {
+  const std::size_t size = line_size();
+  std::size_t kept = 0;
+  for (const SeamLine& line : plan_.seam_lines())
+    for (int part = 0; part < line.parts; ++part) kept += line.exchanged[part] < 0 ? 1 : 0;
+  seam_.assign(kept * size, T(0));
+  sent_.assign(plan_.sent_lines() * size, T(0));
+  received_.assign(plan_.received_lines() * size, T(0));
+  slot_line_.assign(plan_.slots(), nullptr);
+  T* next = seam_.data();
+  for (const SeamLine& line : plan_.seam_lines())
+    for (int part = 0; part < line.parts; ++part) {
+      if (line.slot[part] < 0) continue;
+      T*& place = slot_line_[line.slot[part]];
+      if (line.exchanged[part] >= 0) {
+        place = sent_.data() + line.exchanged[part] * size;
+      } else {
+        place = next;
+        next += size;
+      }
+    }
+  if (plan_.has_shell()) halo_ = ranks_->make_halo(plan_.graph(size * sizeof(T)));
 }
 
 template <class T>
 double WaveEngine<T>::compute_memory(const Lattice& lattice, int memory_variables) {
+  return compute_memory(lattice, memory_variables, {{0, lattice.ny()}, {0, lattice.nz()}});
+}
+
+template <class T>
+double WaveEngine<T>::compute_memory(const Lattice& lattice, int memory_variables, const ElementBlock& part) {
   const double lanes = padded_lanes(lattice.nx(), Pack<T>::lanes);
-  const double lines =
-      (double(lattice.ny()) * lattice.degree + 1) * (double(lattice.nz()) * lattice.degree + 1);
+  const double lines = (double(part.rows[1] - part.rows[0]) * lattice.degree + 1) *
+                       (double(part.slabs[1] - part.slabs[0]) * lattice.degree + 1);
   return (2.0 + memory_variables) * sizeof(T) * 3 * lattice.degree * lanes * lines;
 }
 
 template <class T>
-void WaveEngine<T>::make_line_tables() {
-  const GllRule rule(N_);
-  const std::vector<double> ones_x(lattice_.nx(), 1.0), ones_y(lattice_.ny(), 1.0);
-  std::vector<double> density;
-  for (const Slab& slab : slabs_) density.push_back(materials_[slab.layer].density);
-  mx_ = assemble_mass(rule, lattice_.x, ones_x);
-  my_ = assemble_mass(rule, lattice_.y, ones_y);
-  mz_density_ = assemble_mass(rule, lattice_.z, density);
-
-  const std::size_t table = static_cast<std::size_t>(N_) * stride_;
-  rmx_.assign(table, T(0));
-  kx_.assign(table, T(0));
-  mx_table_.assign(table, T(0));
-  kx_left_.assign(stride_, T(0));
-  x_end_.assign(stride_, T(0));
-  for (int X = 0; X < nX_; ++X) {
-    const int e = X / N_, i = X % N_;
-    rmx_[i * stride_ + e] = static_cast<T>(1 / mx_[X]);
-    mx_table_[i * stride_ + e] = static_cast<T>(mx_[X]);
-    if (e < lattice_.nx())
-      kx_[i * stride_ + e] = static_cast<T>(2 / (lattice_.x[e + 1] - lattice_.x[e]) / mx_[X]);
-    if (i == 0 && e > 0) kx_left_[e] = static_cast<T>(2 / (lattice_.x[e] - lattice_.x[e - 1]) / mx_[X]);
-  }
-  // At a plane of symmetry, even or odd, what the terms of the face act on is zero or held.
-  if (!lattice_.quarter_model) x_end_[0] = static_cast<T>(-0.5 / mx_.front());
-  x_end_[lattice_.nx()] = static_cast<T>(0.5 / mx_.back());
-}
-
-template <class T>
-void WaveEngine<T>::make_boundary_tables() {
-  const GllRule rule(N_);
-  const auto along_z = [&](auto modulus) {
-    std::vector<double> factor;
-    for (const Slab& slab : slabs_) factor.push_back(modulus(materials_[slab.layer]));
-    return assemble_mass(rule, lattice_.z, factor);
-  };
-  const auto spring_normal = [](const EngineMaterial& m) {
-    const double nu = m.lambda / (2 * (m.lambda + m.mu));
-    return 6 * m.mu / (3 - 2 * nu);
-  };
-  const auto spring_shear = [](const EngineMaterial& m) { return m.mu; };
-  const auto dash_p = [](const EngineMaterial& m) { return std::sqrt(m.density * (m.lambda + 2 * m.mu)); };
-  const auto dash_s = [](const EngineMaterial& m) { return std::sqrt(m.density * m.mu); };
-  spring_normal_z_ = along_z(spring_normal);
-  spring_shear_z_ = along_z(spring_shear);
-  dash_p_z_ = along_z(dash_p);
-  dash_s_z_ = along_z(dash_s);
-  const EngineMaterial& bottom = materials_[slabs_.front().layer];
-  const double depth = -lattice_.z.front();
-  spring_normal_bottom_ = spring_normal(bottom) / depth;
-  spring_shear_bottom_ = spring_shear(bottom) / depth;
-  dash_p_bottom_ = dash_p(bottom);
-  dash_s_bottom_ = dash_s(bottom);
-  distance_x_ = {boundary_.origin[0] - lattice_.x.front(), lattice_.x.back() - boundary_.origin[0]};
-  distance_y_ = {boundary_.origin[1] - lattice_.y.front(), lattice_.y.back() - boundary_.origin[1]};
-}
-
-template <class T>
-int WaveEngine<T>::find_material(int ex, int ey, int ez) const {
-  const auto is_in = [](const std::array<int, 2>& range, int e) { return range[0] <= e && e < range[1]; };
-  for (auto block = lattice_.blocks.rbegin(); block != lattice_.blocks.rend(); ++block)
-    if (is_in(block->x, ex) && is_in(block->y, ey) && is_in(block->z, ez)) return block->material;
-  return lattice_.layer[ez];
-}
-
-template <class T>
-void WaveEngine<T>::make_block_tables() {
-  const int nx = lattice_.nx(), ny = lattice_.ny(), nz = lattice_.nz();
-  ones_.assign(stride_, T(1));
-  hx_.assign(stride_, T(0));
-  slope_x_.assign(stride_, T(0));
-  for (int ex = 0; ex < nx; ++ex) {
-    const double h = lattice_.x[ex + 1] - lattice_.x[ex];
-    hx_[ex] = static_cast<T>(h);
-    slope_x_[ex] = static_cast<T>(2 / h);
-  }
-  block_row_.assign(static_cast<std::size_t>(ny) * nz, -1);
-  mass_line_.assign(static_cast<std::size_t>(nY_) * nZ_, -1);
-  for (int ez = 0; ez < nz; ++ez)
-    for (int ey = 0; ey < ny; ++ey) {
-      const int layer = lattice_.layer[ez];
-      BlockRow row{nx, 0, {}, {}, {}, {}, {}, {}, {}, {}};
-      for (auto* table :
-           {&row.lambda, &row.mu, &row.minus_lambda, &row.minus_mu, &row.lambda_change, &row.mu_change,
-            &row.beta, &row.minus_weight[0], &row.minus_weight[1], &row.minus_weight[2]})
-        table->assign(stride_, T(0));
-      for (int ex = 0; ex < nx; ++ex) {
-        const int material = find_material(ex, ey, ez);
-        if (material == layer) continue;
-        row.first = std::min(row.first, ex);
-        row.last = ex + 1;
-        const EngineMaterial& from = materials_[layer];
-        const EngineMaterial to = material < 0 ? EngineMaterial{} : materials_[material];
-        row.lambda[ex] = static_cast<T>(to.lambda);
-        row.mu[ex] = static_cast<T>(to.mu);
-        row.minus_lambda[ex] = static_cast<T>(-from.lambda);
-        row.minus_mu[ex] = static_cast<T>(-from.mu);
-        row.lambda_change[ex] = static_cast<T>(to.lambda - from.lambda);
-        row.mu_change[ex] = static_cast<T>(to.mu - from.mu);
-        row.beta[ex] = static_cast<T>(to.beta);
-        for (std::size_t l = 0; l < to.memory_weights.size(); ++l)
-          row.minus_weight[l][ex] = static_cast<T>(-to.memory_weights[l]);
-      }
-      if (row.last == 0) continue;
-      block_row_[static_cast<std::size_t>(ez) * ny + ey] = static_cast<int>(block_rows_.size());
-      block_rows_.push_back(std::move(row));
-    }
-
-  // True masses of the lines of those rows.
-  const GllRule rule(N_);
-  const auto density = [&](int ex, int ey, int ez) {
-    const int material = find_material(ex, ey, ez);
-    return material < 0 ? 0.0 : materials_[material].density;
-  };
-  // The one or two elements of a node on an axis, each with its share of the node's length.
-  struct Share {
-    int element;
-    double length;
-  };
-  const auto shares = [&](const std::vector<double>& lines, int node) {
-    std::vector<Share> result;
-    const int e = node / N_, i = node % N_;
-    if (i == 0 && e > 0) result.push_back({e - 1, rule.weights(N_) * (lines[e] - lines[e - 1]) / 2});
-    if (e + 1 < static_cast<int>(lines.size()))
-      result.push_back({e, rule.weights(i) * (lines[e + 1] - lines[e]) / 2});
-    return result;
-  };
-  for (int Z = 0; Z < nZ_; ++Z)
-    for (int Y = 0; Y < nY_; ++Y) {
-      const std::vector<Share> in_y = shares(lattice_.y, Y), in_z = shares(lattice_.z, Z);
-      bool has_block = false;
-      for (const Share& y : in_y)
-        for (const Share& z : in_z)
-          has_block = has_block || block_row_[static_cast<std::size_t>(z.element) * ny + y.element] >= 0;
-      if (!has_block) continue;
-      MassLine line;
-      line.ratio.assign(static_cast<std::size_t>(N_) * stride_, T(0));
-      line.inverse.assign(static_cast<std::size_t>(N_) * stride_, T(0));
-      for (int X = 0; X < nX_; ++X) {
-        double sum = 0;
-        for (const Share& z : in_z)
-          for (const Share& y : in_y)
-            for (const Share& x : shares(lattice_.x, X))
-              sum += density(x.element, y.element, z.element) * x.length * y.length * z.length;
-        const double ratio = sum / mass_of_layers(X, Y, Z);
-        const std::size_t place = static_cast<std::size_t>(X % N_) * stride_ + X / N_;
-        line.ratio[place] = static_cast<T>(ratio);
-        line.inverse[place] = static_cast<T>(ratio > 0 ? 1 / ratio : 0.0);
-      }
-      mass_line_[static_cast<std::size_t>(Z) * nY_ + Y] = static_cast<int>(mass_lines_.size());
-      mass_lines_.push_back(std::move(line));
-    }
-}
-
-template <class T>
 double WaveEngine<T>::mass(int X, int Y, int Z) const {
-  const MassLine* line = find_mass_line(Y, Z);
+  const auto* line = blocks_.find_mass_line({Y, Z});
   const double ratio =
       line ? static_cast<double>(line->ratio[static_cast<std::size_t>(X % N_) * stride_ + X / N_]) : 1.0;
-  return ratio * mass_of_layers(X, Y, Z);
+  return ratio * axes_.mx[X] * axes_.my[Y] * axes_.mz_density[Z];
 }
 
 /// Takes the layer's elements out of a row's force and puts the blocks' in.
 template <class T>
 void WaveEngine<T>::add_blocks(const Tile<T>& tile, Field field, int ey, int ez) const {
-  if (block_row_.empty()) return;
-  const int number = block_row_[static_cast<std::size_t>(ez) * lattice_.ny() + ey];
-  if (number < 0) return;
-  const BlockRow& block = block_rows_[number];
+  const auto* const found = blocks_.find_row(ey, ez);
+  if (!found) return;
+  const auto& block = *found;
   const int n = N_ + 1;
   ElementRow<T> row{};
   row.stride = stride_;
   row.first = block.first;
   row.last = block.last;
-  row.rmx = rmx_.data();
-  row.hx = hx_.data();
-  row.slope_x = slope_x_.data();
+  row.rmx = axes_.rmx.data();
+  row.hx = blocks_.hx.data();
+  row.slope_x = blocks_.slope_x.data();
   row.hy = tile.hy;
   row.hz = tile.hz;
   std::copy_n(tile.f, n * n, row.f);
   row.parts = 1;
-  row.weight[0] = ones_.data();
+  row.weight[0] = blocks_.ones.data();
   std::copy_n(tile.w, n * n, row.part[0]);
   if (field == Field::plain) {  // w is the same for both materials
     row.lambda = block.lambda_change.data();
@@ -327,7 +161,7 @@ void WaveEngine<T>::add_blocks(const Tile<T>& tile, Field field, int ey, int ez)
       for (int j = 0; j < n; ++j)
         row.part[p][k * n + j] = values.data() + line_offset(ey * N_ + j, ez * N_ + k);
   };
-  set_part(0, u_, field == Field::weighted ? block.beta : ones_);
+  set_part(0, u_, field == Field::weighted ? block.beta : blocks_.ones);
   if (field == Field::viscous) set_part(row.parts++, v_, block.beta);
   if (field == Field::memory)
     for (std::size_t l = 0; l < zeta_.size(); ++l) set_part(row.parts++, zeta_[l], block.minus_weight[l]);
@@ -339,18 +173,16 @@ void WaveEngine<T>::set_time_step(double dt) {
   dt_ = dt;
   keep_.clear();
   for (const double rate : rates_) keep_.push_back(static_cast<T>(std::exp(-rate * dt)));
-  const GllRule rule(N_);
   const double strength = boundary_.sponge_strength * boundary_.sponge_speed;
-  std::vector<double> decay, gain;
-  make_sponge(node_positions(rule, lattice_.x), lattice_.interior_x(), strength, dt, decay, gain);
+  const SpongeFactors along_x = compute_sponge(N_, lattice_.x, lattice_.interior_x(), strength, dt);
   decay_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
   gain_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
   for (int X = 0; X < nX_; ++X) {
-    decay_x_[X % N_ * stride_ + X / N_] = static_cast<T>(decay[X]);
-    gain_x_[X % N_ * stride_ + X / N_] = static_cast<T>(gain[X]);
+    decay_x_[X % N_ * stride_ + X / N_] = static_cast<T>(along_x.decay[X]);
+    gain_x_[X % N_ * stride_ + X / N_] = static_cast<T>(along_x.gain[X]);
   }
-  make_sponge(node_positions(rule, lattice_.y), lattice_.interior_y(), strength, dt, decay_y_, gain_y_);
-  make_sponge(node_positions(rule, lattice_.z), lattice_.interior_z(), strength, dt, decay_z_, gain_z_);
+  sponge_y_ = compute_sponge(N_, lattice_.y, lattice_.interior_y(), strength, dt);
+  sponge_z_ = compute_sponge(N_, lattice_.z, lattice_.interior_z(), strength, dt);
 }
 
 template <class T>
@@ -390,31 +222,32 @@ void WaveEngine<T>::form_line(Field field, int layer, int Y, int Z, T* out) cons
   }
 }
 
-/// Runs through the rows of one thread, slab by slab from the bottom; `finish(scratch, Y, Z, f)` gets each
-/// line of nodes when its force is complete and may overwrite the line's field.
+/// Runs through the rows of a region, slab by slab from the bottom; `finish(sums, Y, Z, f)` gets each line of
+/// nodes when its force is complete and may overwrite the line's field. Lines of seams wait for finish_seams().
 template <class T>
 template <class Finish>
-void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
+void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const Finish& finish) {
   const FlushSubnormals flush;
   const GllRule rule(N_);
-  const int n = N_ + 1, rows = lattice_.ny(), slabs = lattice_.nz();
+  const int n = N_ + 1, rows = lattice_.ny();
   const std::size_t size = line_size();
   Scratch& scratch = scratch_[thread];
-  const int r0 = first_row_[thread], r1 = first_row_[thread + 1];
-  const bool seam_low = thread > 0, seam_high = thread + 1 < team_.size();
+  const auto [r0, r1] = region.elements.rows;
+  const auto [s0, s1] = region.elements.slabs;
 
   Tile<T> tile{};
   tile.stride = stride_;
-  tile.rmx = rmx_.data();
-  tile.kx = kx_.data();
-  tile.kx_left = kx_left_.data();
-  tile.x_end = x_end_.data();
+  tile.rmx = axes_.rmx.data();
+  tile.kx = axes_.kx.data();
+  tile.kx_left = axes_.kx_left.data();
+  tile.x_end = axes_.x_end.data();
   tile.last_lane = lattice_.nx();
 
-  for (int ez = 0; ez < slabs; ++ez) {
+  for (int ez = s0; ez < s1; ++ez) {
+    if (thread == 0 && is_exchanging_) halo_->make_progress();
     const Slab& slab = slabs_[ez];
     const EngineMaterial& material = materials_[slab.layer];
-    const bool top = ez + 1 == slabs;
+    const bool top = ez + 1 == s1;
     tile.lambda = static_cast<T>(material.lambda);
     tile.mu = static_cast<T>(material.mu);
     tile.hz = static_cast<T>(slab.hz);
@@ -435,7 +268,7 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
       tile.j_end = last_row ? n : N_;
       for (int j = 0; j < n; ++j) {
         tile.my_element[j] = static_cast<T>(rule.weights(j) * hy / 2);
-        tile.my[j] = static_cast<T>(j < tile.j_end ? my_[ey * N_ + j] : 0.0);
+        tile.my[j] = static_cast<T>(j < tile.j_end ? axes_.my[ey * N_ + j] : 0.0);
         tile.gradient_end[j] = T(0);
       }
       // At the plane of symmetry, even or odd, what the terms of the face act on is zero or held.
@@ -454,10 +287,9 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
             tile.w[k * n + j] = line;
           }
           T* f;
-          if (j == 0 && ey == r0 && seam_low)
-            f = scratch.seam_high.data() + Z * size;
-          else if (j == N_ && ey + 1 == r1 && seam_high)
-            f = scratch_[thread + 1].seam_low.data() + Z * size;
+          const int seam = region.find_slot({Y, Z}, j == 0, k == 0);
+          if (seam >= 0)
+            f = slot_line_[seam];
           else if (k == 0)
             f = plane_low + (Y - r0 * N_) * size;
           else if (k == N_)
@@ -465,7 +297,7 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
           else
             f = scratch.f.data() + slot * size;
           tile.f[k * n + j] = f;
-          tile.add[k * n + j] = (k == 0 && ez > 0) || (j == 0 && ey > r0);
+          tile.add[k * n + j] = seam < 0 && ((k == 0 && ez > s0) || (j == 0 && ey > r0));
         }
       // Soon needed: what finishes this row, then the field of the next row (or of the first one, a slab up).
       tile.ahead_count = 0;
@@ -488,32 +320,53 @@ void WaveEngine<T>::sweep(int thread, Field field, const Finish& finish) {
       tile_function_(tile);
       add_blocks(tile, field, ey, ez);
 
-      const int j0 = ey == r0 && seam_low ? 1 : 0, j1 = last_row ? n : N_, k1 = top ? n : N_;
-      for (int k = 0; k < k1; ++k)
-        for (int j = j0; j < j1; ++j) finish(scratch, ey * N_ + j, ez * N_ + k, tile.f[k * n + j]);
+      const int j0 = ey == r0 && region.low_y ? 1 : 0, j1 = last_row ? n : N_;
+      const int k0 = ez == s0 && region.low_z ? 1 : 0, k1 = top && !region.high_z ? n : N_;
+      for (int k = k0; k < k1; ++k)
+        for (int j = j0; j < j1; ++j) finish(scratch.sums, ey * N_ + j, ez * N_ + k, tile.f[k * n + j]);
     }
   }
 }
 
+/// Adds up the parts of each line of the seams and finishes it; every rank that shares a line does so.
 template <class T>
 template <class Finish>
-void WaveEngine<T>::finish_seam(int thread, const Finish& finish) {
-  if (thread == 0) return;
+void WaveEngine<T>::finish_seams(int thread, const Finish& finish) {
   const FlushSubnormals flush;
   Scratch& scratch = scratch_[thread];
-  for (int Z = 0; Z < nZ_; ++Z) {
-    T* f = scratch.seam_high.data() + Z * line_size();
-    const T* low = scratch.seam_low.data() + Z * line_size();
-    for (std::size_t p = 0; p < line_size(); ++p) f[p] += low[p];
-    finish(scratch, first_row_[thread] * N_, Z, f);
+  const std::size_t size = line_size(), count = plan_.seam_lines().size();
+  T* const total = scratch.f.data();
+  for (std::size_t s = count * thread / team_.size(); s < count * (thread + 1) / team_.size(); ++s) {
+    const SeamLine& line = plan_.seam_lines()[s];
+    std::array<const T*, 4> part{};
+    for (int i = 0; i < line.parts; ++i)
+      part[i] = line.slot[i] >= 0 ? slot_line_[line.slot[i]] : received_.data() + line.exchanged[i] * size;
+    for (std::size_t p = 0; p < size; ++p) total[p] = part[0][p] + part[1][p];
+    for (int i = 2; i < line.parts; ++i)
+      for (std::size_t p = 0; p < size; ++p) total[p] += part[i][p];
+    finish(line.is_owned ? scratch.sums : scratch.sums_of_others, line.place.Y, line.place.Z, total);
   }
 }
 
 template <class T>
 template <class Finish>
 void WaveEngine<T>::run_sweep(Field field, const Finish& finish) {
-  team_.run([&](int t) { sweep(t, field, finish); });
-  if (team_.size() > 1) team_.run([&](int t) { finish_seam(t, finish); });
+  const auto run = [&](const RegionPlan::Regions& regions) {
+    team_.run([&](int t) {
+      for (const Region& region : regions[t]) sweep(t, region, field, finish);
+    });
+  };
+  if (halo_) {
+    run(plan_.shell());
+    halo_->begin(sent_.data(), received_.data());
+    is_exchanging_ = true;
+  }
+  run(plan_.core());
+  if (halo_) {
+    is_exchanging_ = false;
+    halo_->end();
+  }
+  if (!plan_.seam_lines().empty()) team_.run([&](int t) { finish_seams(t, finish); });
 }
 
 template <class T>
@@ -522,14 +375,14 @@ void WaveEngine<T>::add_springs(int Y, int Z, T* f) const {
   const T* u = u_.data() + line_offset(Y, Z);
   const std::size_t component = static_cast<std::size_t>(N_) * stride_;
   for (int c = 0; c < 3; ++c, f += component, u += component) {
-    const double k_x = (c == 0 ? spring_normal_z_ : spring_shear_z_)[Z] * my_[Y];
-    if (!lattice_.quarter_model) f[0] += static_cast<T>(k_x / distance_x_[0] / mx_.front()) * u[0];
-    f[lattice_.nx()] += static_cast<T>(k_x / distance_x_[1] / mx_.back()) * u[lattice_.nx()];
+    const double k_x = (c == 0 ? edge_.spring_normal_z : edge_.spring_shear_z)[Z] * axes_.my[Y];
+    if (!lattice_.quarter_model) f[0] += static_cast<T>(k_x / edge_.distance_x[0] / axes_.mx.front()) * u[0];
+    f[lattice_.nx()] += static_cast<T>(k_x / edge_.distance_x[1] / axes_.mx.back()) * u[lattice_.nx()];
     double k = 0;
-    const double k_y = (c == 1 ? spring_normal_z_ : spring_shear_z_)[Z];
-    if (Y == 0 && !lattice_.half_model) k += k_y / distance_y_[0];
-    if (Y == nY_ - 1) k += k_y / distance_y_[1];
-    if (Z == 0) k += (c == 2 ? spring_normal_bottom_ : spring_shear_bottom_) * my_[Y];
+    const double k_y = (c == 1 ? edge_.spring_normal_z : edge_.spring_shear_z)[Z];
+    if (Y == 0 && !lattice_.half_model) k += k_y / edge_.distance_y[0];
+    if (Y == nY_ - 1) k += k_y / edge_.distance_y[1];
+    if (Z == 0) k += (c == 2 ? edge_.spring_normal_bottom : edge_.spring_shear_bottom) * axes_.my[Y];
     if (k == 0) continue;
     const T spring = static_cast<T>(k);
     for (std::size_t p = 0; p < component; ++p) f[p] += spring * u[p];
@@ -538,13 +391,13 @@ void WaveEngine<T>::add_springs(int Y, int Z, T* f) const {
 
 template <class T>
 template <bool account>
-void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
+void WaveEngine<T>::advance_line(Sums& sums, int Y, int Z, T* f) {
   using V = pack<T>;
   add_springs(Y, Z, f);
   const std::size_t offset = line_offset(Y, Z), row_size = static_cast<std::size_t>(N_) * stride_;
-  const double line_mass = my_[Y] * mz_density_[Z];
-  const MassLine* const masses = find_mass_line(Y, Z);
-  const bool loaded = Z == nZ_ - 1 && loaded_row_[Y];
+  const double line_mass = axes_.my[Y] * axes_.mz_density[Z];
+  const auto* const masses = blocks_.find_mass_line({Y, Z});
+  const bool loaded = Z == nZ_ - 1 && loaded_row_[Y - first_.Y];
   const T dt = static_cast<T>(dt_), half_dt = static_cast<T>(0.5 * dt_);
   const int memories = static_cast<int>(zeta_.size());
   T keep[3] = {};
@@ -557,10 +410,10 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
     T* z[3] = {};
     for (int l = 0; l < memories; ++l) z[l] = zeta_[l].data() + offset + c * row_size;
     const T* force = f + c * row_size;
-    const T* load = loaded ? load_.data() + Y * line_size() + c * row_size : nullptr;
+    const T* load = loaded ? load_.data() + (Y - first_.Y) * line_size() + c * row_size : nullptr;
 
     // Factors of the line: sponge along y and z, dashpots of the faces y = const and z = const.
-    double decay = decay_y_[Y] * decay_z_[Z], gain = gain_y_[Y] * gain_z_[Z];
+    double decay = sponge_y_.decay[Y] * sponge_z_.decay[Z], gain = sponge_y_.gain[Y] * sponge_z_.gain[Z];
     const auto add_dashpot = [&](double a) {
       decay *= (1 - a) / (1 + a);
       gain /= 1 + a;
@@ -569,15 +422,16 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
     if (is_held_at_start(c)) f[c * row_size] = T(0);
     T end_force[2] = {force[0], force[last]};
     if (boundary_.dashpots) {
-      const double y_dashpot = dt_ / 2 * (c == 1 ? dash_p_z_ : dash_s_z_)[Z] / mz_density_[Z];
-      if (Y == 0 && !lattice_.half_model) add_dashpot(y_dashpot / my_.front());
-      if (Y == nY_ - 1) add_dashpot(y_dashpot / my_.back());
-      if (Z == 0) add_dashpot(dt_ / 2 * (c == 2 ? dash_p_bottom_ : dash_s_bottom_) / mz_density_[0]);
+      const double y_dashpot = dt_ / 2 * (c == 1 ? edge_.dash_p_z : edge_.dash_s_z)[Z] / axes_.mz_density[Z];
+      if (Y == 0 && !lattice_.half_model) add_dashpot(y_dashpot / axes_.my.front());
+      if (Y == nY_ - 1) add_dashpot(y_dashpot / axes_.my.back());
+      if (Z == 0)
+        add_dashpot(dt_ / 2 * (c == 2 ? edge_.dash_p_bottom : edge_.dash_s_bottom) / axes_.mz_density[0]);
       // Those of the faces x = const act on the first and the last node only.
-      const double x_dashpot = dt_ / 2 * (c == 0 ? dash_p_z_ : dash_s_z_)[Z] / mz_density_[Z];
+      const double x_dashpot = dt_ / 2 * (c == 0 ? edge_.dash_p_z : edge_.dash_s_z)[Z] / axes_.mz_density[Z];
       for (const int end : {0, last}) {
         if (end == 0 && lattice_.quarter_model) continue;
-        const double a = x_dashpot / (end == 0 ? mx_.front() : mx_.back());
+        const double a = x_dashpot / (end == 0 ? axes_.mx.front() : axes_.mx.back());
         v[end] *= static_cast<T>((1 - a) / (1 + a));
         const T load_end = load ? load[end] : T(0);  // added again below
         f[c * row_size + end] = (force[end] + load_end) * static_cast<T>(1 / (1 + a)) - load_end;
@@ -610,7 +464,7 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
           // (1 + E) / (2 S): the sponge's share in the mass of the kinetic energy.
           const V decay_p = load_pack(decay_x_.data() + p) * static_cast<T>(decay);
           const V gain_p = load_pack(gain_x_.data() + p) * static_cast<T>(2 * gain);
-          const V mx = load_pack(mx_table_.data() + p);
+          const V mx = load_pack(axes_.mx_table.data() + p);
           V kinetic_p = mx * (T(1) + decay_p) / gain_p * v_new * v_new;
           if (masses) kinetic_p *= load_pack(masses->ratio.data() + p);
           kinetic += kinetic_p;
@@ -635,81 +489,97 @@ void WaveEngine<T>::advance_line(Scratch& scratch, int Y, int Z, T* f) {
     if constexpr (account)
       for (const int end : {0, last}) {
         const double missing = static_cast<double>(end_force[end == 0 ? 0 : 1] - force[end]);
-        scratch.energy += 0.5 * mx_[end == 0 ? 0 : nX_ - 1] * missing * static_cast<double>(u[end]);
+        sums.energy += 0.5 * axes_.mx[end == 0 ? 0 : nX_ - 1] * missing * static_cast<double>(u[end]);
       }
   }
   if constexpr (account) {
-    scratch.kinetic += 0.5 * line_mass * sum_of<T>(kinetic);
-    scratch.energy += 0.5 * line_mass * sum_of<T>(kinetic) + 0.5 * sum_of<T>(strain);
-    scratch.work += 0.5 * dt_ * sum_of<T>(work);
+    sums.kinetic += 0.5 * line_mass * sum_of<T>(kinetic);
+    sums.energy += 0.5 * line_mass * sum_of<T>(kinetic) + 0.5 * sum_of<T>(strain);
+    sums.work += 0.5 * dt_ * sum_of<T>(work);
   }
 }
 
 template <class T>
 void WaveEngine<T>::advance(const std::vector<SurfaceNodeForce>& forces, bool account) {
-  for (int Y = 0; Y < nY_; ++Y)
-    if (loaded_row_[Y]) {
-      std::fill_n(load_.begin() + Y * line_size(), line_size(), T(0));
-      loaded_row_[Y] = 0;
+  for (std::size_t row = 0; row < loaded_row_.size(); ++row)
+    if (loaded_row_[row]) {
+      std::fill_n(load_.begin() + row * line_size(), line_size(), T(0));
+      loaded_row_[row] = 0;
     }
   for (const SurfaceNodeForce& force : forces) {
+    if (!has_line(force.Y, nZ_ - 1)) continue;
     if (force.X == 0 && is_held_at_start(force.component)) continue;
-    load_[force.Y * line_size() + (force.component * N_ + force.X % N_) * stride_ + force.X / N_] -=
-        static_cast<T>(force.force / mx_[force.X]);
-    loaded_row_[force.Y] = 1;
+    const int row = force.Y - first_.Y;
+    load_[row * line_size() + (force.component * N_ + force.X % N_) * stride_ + force.X / N_] -=
+        static_cast<T>(force.force / axes_.mx[force.X]);
+    loaded_row_[row] = 1;
   }
   if (!account) {
-    run_sweep(step_field_, [this](Scratch& s, int Y, int Z, T* f) { advance_line<false>(s, Y, Z, f); });
+    run_sweep(step_field_, [this](Sums& s, int Y, int Z, T* f) { advance_line<false>(s, Y, Z, f); });
     return;
   }
-  for (Scratch& scratch : scratch_) scratch.energy = scratch.kinetic = scratch.work = 0;
-  run_sweep(step_field_, [this](Scratch& s, int Y, int Z, T* f) { advance_line<true>(s, Y, Z, f); });
+  for (Scratch& scratch : scratch_) scratch.sums = {};
+  run_sweep(step_field_, [this](Sums& s, int Y, int Z, T* f) { advance_line<true>(s, Y, Z, f); });
   energy_ = kinetic_energy_ = step_work_ = 0;
   for (const Scratch& scratch : scratch_) {
-    energy_ += scratch.energy;
-    kinetic_energy_ += scratch.kinetic;
-    step_work_ += scratch.work;
+    energy_ += scratch.sums.energy;
+    kinetic_energy_ += scratch.sums.kinetic;
+    step_work_ += scratch.sums.work;
   }
 }
 
 template <class T>
 std::vector<double> WaveEngine<T>::compute_internal_force() {
   std::vector<double> result(static_cast<std::size_t>(3) * nX_ * nY_ * nZ_);
-  run_sweep(Field::plain, [&](Scratch&, int Y, int Z, T* f) {
+  run_sweep(Field::plain, [&](Sums&, int Y, int Z, T* f) {
     add_springs(Y, Z, f);
     for (int c = 0; c < 3; ++c)
       for (int X = 0; X < nX_; ++X)
         result[((static_cast<std::size_t>(c) * nZ_ + Z) * nY_ + Y) * nX_ + X] =
-            mx_[X] * static_cast<double>(f[(c * N_ + X % N_) * static_cast<std::size_t>(stride_) + X / N_]);
+            axes_.mx[X] *
+            static_cast<double>(f[(c * N_ + X % N_) * static_cast<std::size_t>(stride_) + X / N_]);
   });
   return result;
 }
 
+/// The same random numbers at each node whatever the number of ranks: all draw those of all nodes.
 template <class T>
-double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) {
+void WaveEngine<T>::set_random_displacement() {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int Z = 0; Z < nZ_; ++Z)
-    for (int Y = 0; Y < nY_; ++Y)
+    for (int Y = 0; Y < nY_; ++Y) {
+      if (!has_line(Y, Z)) {
+        constexpr unsigned long long draws_per_number = 2;  // 32 bits each
+        random.discard(3 * draws_per_number *
+                       static_cast<unsigned long long>(count_nodes_with_mass(lattice_, {Y, Z})));
+        continue;
+      }
       for (int c = 0; c < 3; ++c)
         for (int X = 0; X < nX_; ++X)
           u_[index(c, X, Y, Z)] = mass(X, Y, Z) > 0 ? static_cast<T>(uniform(random)) * y_factor(c, Y) : T(0);
+    }
+}
+
+template <class T>
+double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) {
+  set_random_displacement();
   const std::size_t row_size = static_cast<std::size_t>(N_) * stride_;
   double eigenvalue = 0, scale = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    for (Scratch& scratch : scratch_) scratch.sum_xkx = scratch.sum_xmx = 0;
-    run_sweep(weighted ? Field::weighted : Field::plain, [&](Scratch& scratch, int Y, int Z, T* f) {
+    for (Scratch& scratch : scratch_) scratch.sums = {};
+    run_sweep(weighted ? Field::weighted : Field::plain, [&](Sums& sums, int Y, int Z, T* f) {
       if (!weighted) add_springs(Y, Z, f);
       T* u = u_.data() + line_offset(Y, Z);
-      const double line_mass = my_[Y] * mz_density_[Z];
-      const MassLine* const masses = find_mass_line(Y, Z);
+      const double line_mass = axes_.my[Y] * axes_.mz_density[Z];
+      const auto* const masses = blocks_.find_mass_line({Y, Z});
       pack<T> xkx{}, xmx{};
       for (int c = 0; c < 3; ++c) {
         if (is_held_at_start(c)) f[c * row_size] = u[c * row_size] = T(0);
         const T factor = static_cast<T>(scale / line_mass) * y_factor(c, Y);
         for (std::size_t p = 0; p < row_size; p += Pack<T>::lanes) {
           const pack<T> x = load_pack(u + c * row_size + p);
-          pack<T> mx = load_pack(mx_table_.data() + p), y = factor * load_pack(f + c * row_size + p);
+          pack<T> mx = load_pack(axes_.mx_table.data() + p), y = factor * load_pack(f + c * row_size + p);
           if (masses) {
             y *= load_pack(masses->inverse.data() + p);
             mx *= load_pack(masses->ratio.data() + p);
@@ -719,15 +589,16 @@ double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) 
           store_pack(u + c * row_size + p, y);
         }
       }
-      scratch.sum_xkx += line_mass / scale * sum_of<T>(xkx);
-      scratch.sum_xmx += line_mass * sum_of<T>(xmx);
+      sums.xkx += line_mass / scale * sum_of<T>(xkx);
+      sums.xmx += line_mass * sum_of<T>(xmx);
     });
-    double xkx = 0, xmx = 0;
+    std::array<double, 2> sums{};
     for (const Scratch& scratch : scratch_) {
-      xkx += scratch.sum_xkx;
-      xmx += scratch.sum_xmx;
+      sums[0] += scratch.sums.xkx;
+      sums[1] += scratch.sums.xmx;
     }
-    eigenvalue = xkx / xmx;
+    if (ranks_) ranks_->sum(sums.data(), sums.size());
+    eigenvalue = sums[0] / sums[1];
     scale = eigenvalue > 0 ? 1 / eigenvalue : 1;
   }
   set_to_rest();

@@ -13,6 +13,8 @@
 
 namespace easydyn::soil {
 
+class Ranks;
+
 /// How material damping is modelled; Layer::damping is the ratio at Site::damping_frequency in all of them.
 enum class DampingModel {
   none,
@@ -60,7 +62,10 @@ struct RunSummary {
   double snapshots = 0;       ///< [byte] of all files
   std::string snapshot_text;  ///< what they show, a line for each plane
   long steps = 0;
-  double expected_time = 0;  ///< [s] wall clock, from a short timing of the real kernel, all lattices
+  int ranks_y = 1, ranks_z = 1;  ///< blocks of the lattice along y and z, one for each rank
+  int threads = 1;               ///< of each rank
+  double halo = 0;               ///< [byte] that the rank with the most neighbours receives in a step
+  double expected_time = 0;      ///< [s] wall clock, from a short timing of the real kernel, all lattices
 };
 
 /// Result of a run: nt output times, nr receivers, nl footprints.
@@ -89,7 +94,9 @@ class WaveSolver {
   /// @throws ModelError if site, loads or options are out of range, a receiver or footprint is outside the
   ///         undamped ground or in an open block, loads of both kinds meet in the half model, or the fields
   ///         do not fit in memory
-  WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {});
+  /// @param ranks  that share the ground and call every function of the solver together; nullptr: this process alone
+  WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {},
+             Ranks* ranks = nullptr);
   ~WaveSolver();
   WaveSolver(WaveSolver&&) noexcept;
   WaveSolver& operator=(WaveSolver&&) noexcept;

@@ -142,6 +142,21 @@ double compute_vtu_size(std::size_t points, std::size_t quads, std::size_t vecto
          array(quads);
 }
 
+void write_pvtu(const std::filesystem::path& path, const std::vector<std::string>& pieces,
+                const std::vector<std::string>& vectors) {
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"{}\" "
+      "header_type=\"UInt64\">\n<PUnstructuredGrid GhostLevel=\"0\">\n<PPointData>\n",
+      byte_order());
+  const auto array = [](const std::string& name) {
+    return fmt::format("<PDataArray type=\"Float32\" Name=\"{}\" NumberOfComponents=\"3\"/>\n", escape(name));
+  };
+  for (const std::string& name : vectors) text += array(name);
+  text += "</PPointData>\n<PPoints>\n" + array("Points") + "</PPoints>\n";
+  for (const std::string& piece : pieces) text += fmt::format("<Piece Source=\"{}\"/>\n", escape(piece));
+  write_text(path, text + "</PUnstructuredGrid>\n</VTKFile>\n");
+}
+
 void write_pvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries) {
   std::string text = fmt::format(
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" "

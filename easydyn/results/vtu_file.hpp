@@ -33,6 +33,11 @@ void write_vtu(const std::filesystem::path& path, const QuadMesh& mesh,
 /// Size of such a file [byte], within 1 kB.
 double compute_vtu_size(std::size_t points, std::size_t quads, std::size_t vectors);
 
+/// Writes the index of one picture in pieces, a file `.pvtu`: files written by write_vtu(), as seen from its folder, and
+/// the names of their vectors. It appears complete or not at all. @throws InputError if the file cannot be written
+void write_pvtu(const std::filesystem::path& path, const std::vector<std::string>& pieces,
+                const std::vector<std::string>& vectors);
+
 /// A file of a series and its time [s]; the file as seen from the folder of the index.
 struct PvdEntry {
   double time = 0;
