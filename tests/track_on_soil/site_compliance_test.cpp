@@ -59,8 +59,8 @@ TEST(MobilityCompliance, IsThatOfTheLayers) {
   EXPECT_THAT(
       [&] { transform_mobility(stored, "m.h5", row.spacing, f, 5); },
       ThrowsMessage<InputError>(HasSubstr("m.h5: \"/neighbour/offset\" has no footprint 2.88 m away")));
-  EXPECT_THAT([&] { transform_mobility(stored, "m.h5", row.spacing, 2 * f, 4); },
-              ThrowsMessage<InputError>(HasSubstr("frequency = 100 Hz, must be <= 62.5")));
+  EXPECT_THAT([&] { transform_mobility(stored, "m.h5", row.spacing, 3 * f, 4); },
+              ThrowsMessage<InputError>(HasSubstr("frequency = 150 Hz, must be <= 100")));
   EXPECT_THAT([&] { footprints_of(mobility_of(site, 1), "m.h5"); },
               ThrowsMessage<InputError>(HasSubstr("holds no neighbour along the track")));
 }
