@@ -146,7 +146,11 @@ void set_earlier_run_aside(const RunArguments& arguments) {
   if (!arguments.restart) {
     bool had_checkpoint = false;
     for (const fs::path& checkpoint : checkpoints_of(arguments.output)) {
-      had_checkpoint = set_aside(checkpoint) || had_checkpoint;
+      if (!set_aside(checkpoint)) continue;
+      had_checkpoint = true;
+      fs::path previous = checkpoint;
+      previous.replace_filename(checkpoint.stem().string() + ".previous" + checkpoint.extension().string());
+      set_rank_checkpoints_aside(checkpoint, previous);
     }
     if (had_checkpoint) {
       fmt::print(
@@ -182,8 +186,10 @@ void run(RunArguments& arguments, const std::string& command_line, Ranks* ranks)
   }
   std::optional<SemiAnalyticalMotion> semi_analytical;
   if (arguments.verify) {  // first: what does not fit is refused in seconds
-    semi_analytical = compute_semi_analytical_motion(site, loads, find_ground_damping(arguments.damping),
-                                                     arguments.options.threads);
+    act_on_first(ranks, [&] {
+      semi_analytical = compute_semi_analytical_motion(site, loads, find_ground_damping(arguments.damping),
+                                                       arguments.options.threads);
+    });
   }
   act_on_first(ranks, [&] {
     if (!arguments.restart) set_aside(control.snapshots);
@@ -202,7 +208,7 @@ void run(RunArguments& arguments, const std::string& command_line, Ranks* ranks)
     }
   });
   print_indicators(stdout, vibrations);
-  if (arguments.verify) print_comparison(vibrations);
+  if (vibrations.semi_analytical) print_comparison(vibrations);
   fmt::print("\n{}\n", result.string());
 }
 

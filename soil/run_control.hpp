@@ -40,9 +40,14 @@ inline std::filesystem::path rank_checkpoint_of(const std::filesystem::path& che
   return file;
 }
 
-/// Removes the files of one rank beside a checkpoint, of all ranks but the first if `rank` is 0, except `kept`.
+/// Removes the files of one rank beside a checkpoint, also half-written ones, of all ranks but the first if `rank` is 0,
+/// except `kept`.
 void remove_rank_checkpoints(const std::filesystem::path& checkpoint, int rank,
                              const std::filesystem::path& kept = {});
+
+/// The files of the other ranks follow a checkpoint that has been renamed to `previous`; an older set there is removed.
+void set_rank_checkpoints_aside(const std::filesystem::path& checkpoint,
+                                const std::filesystem::path& previous);
 
 /// A run ended because it was asked to; what() says where and how to go on.
 class RunStopped : public Error {

@@ -132,10 +132,15 @@ void WaveSolver::Impl::save(const RunControl& control, WaveEngine<T>& engine, Gr
     engine.visit_state(write);
     file.commit();
   };
-  if (ranks)
+  try {
     act_together(ranks, [&] {
       if (rank > 0) write_file();
     });
+  } catch (const Error&) {  // no set: what this rank has written of it goes
+    std::error_code ignored;
+    if (rank > 0) std::filesystem::remove(path, ignored);
+    throw;
+  }
   act_on_first(ranks, write_file);
   if (rank > 0) remove_rank_checkpoints(control.checkpoint, rank, path);
 }

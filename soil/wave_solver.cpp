@@ -213,9 +213,9 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
   if (!(duration >= 10 * output_step))
     throw ModelError(fmt::format("site: duration = {} s, must be at least ten output steps of {} s", duration,
                                  output_step));
-  // Histories of receivers and footprints, held twice while they are written.
+  // Histories of receivers and footprints, held twice while they are written, by every rank.
   const double histories =
-      2 * 8 * duration / output_step *
+      2.0 * 8 * (ranks ? ranks->on_this_node() : 1) * duration / output_step *
       static_cast<double>(3 * site.receivers.size() + loads.footprints.size() + observed.size());
   if (!(memory_here + histories <= limit))
     throw ModelError(
@@ -332,6 +332,7 @@ RunSummary WaveSolver::compute_summary() {
     summary.checkpoint += impl.low->compute_checkpoint_size();
     summary.expected_time += impl.low->measure_step() * static_cast<double>(impl.low->steps());
   }
+  if (impl.ranks) impl.ranks->sum(&summary.checkpoint, 1);  // a file of each rank
   return summary;
 }
 

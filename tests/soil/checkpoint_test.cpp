@@ -168,6 +168,28 @@ TEST(Restart, GivesTheSameBitsAsARunThatWasNotStopped) {
       }
 }
 
+TEST(RankCheckpoints, FollowTheirCheckpointAndGoWithIt) {
+  const TemporaryFolder folder;
+  for (const char* name : {"checkpoint.rank1.step40.bin", "checkpoint.rank2.step40.bin.partial",
+                           "checkpoint.previous.rank1.step7.bin", "checkpoint.low.rank1.step9.bin"})
+    folder.write(name, "");
+  const auto is_there = [&](const char* name) { return std::filesystem::exists(folder / name); };
+  set_rank_checkpoints_aside(folder / "checkpoint.bin", folder / "checkpoint.previous.bin");
+  EXPECT_EQ(rank_checkpoint_of(folder / "checkpoint.previous.bin", 1, 40),
+            folder / "checkpoint.previous.rank1.step40.bin");
+  EXPECT_TRUE(is_there("checkpoint.previous.rank1.step40.bin"));
+  EXPECT_FALSE(is_there("checkpoint.rank1.step40.bin"));
+  EXPECT_FALSE(is_there("checkpoint.previous.rank1.step7.bin"));
+  EXPECT_TRUE(is_there("checkpoint.low.rank1.step9.bin"));  // of another checkpoint
+
+  remove_rank_checkpoints(folder / "checkpoint.previous.bin", 1,
+                          folder / "checkpoint.previous.rank1.step40.bin");
+  EXPECT_TRUE(is_there("checkpoint.previous.rank1.step40.bin"));
+  remove_rank_checkpoints(folder / "checkpoint.previous.bin", 0);
+  EXPECT_FALSE(is_there("checkpoint.previous.rank1.step40.bin"));
+  EXPECT_FALSE(is_there("checkpoint.previous.rank2.step40.bin.partial"));
+}
+
 TEST(Restart, GoesOnInBothPartsOfARunWithACrossover) {
   const TemporaryFolder folder;
   RunControl control;

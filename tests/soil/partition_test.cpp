@@ -178,14 +178,15 @@ void expect_same_on_ranks(int count, int threads, Damping damping, bool blocks, 
     double difference = 0;
     for (std::size_t i = 0; i < alone.displacement.size(); ++i)
       difference = std::max(difference, std::abs(shared.displacement[i] - alone.displacement[i]));
-    EXPECT_LE(difference, tolerance * peak) << count << " ranks, " << threads << " threads";
+    // The same bits but where lines between ranks touch blocks.
+    EXPECT_LE(difference, blocks ? tolerance * peak : 0) << count << " ranks, " << threads << " threads";
     EXPECT_NEAR(shared.energy, alone.energy, 10 * tolerance * alone.energy);
     EXPECT_NEAR(shared.largest, alone.largest, 10 * tolerance * alone.largest);
   });
 }
 
-// Tolerances: the forces on shared lines are summed in another order, which costs some units of the last digit per
-// step; the promise is 1e-12 and 1e-5 of the peak.
+// Tolerances: sums over all nodes (energy, eigenvalue) and lines between ranks that touch blocks end in other last
+// digits; the promise is 1e-12 and 1e-5 of the peak.
 TEST(WaveEngineOnRanks, MovesAsOnOneRank) {
   for (const int ranks : {2, 3, 4, 6}) expect_same_on_ranks<double>(ranks, 1, Damping::none, false, 1e-12);
 }
@@ -203,6 +204,7 @@ TEST(WaveEngineOnRanks, MovesAsOnOneRankWithDampingAndBlocks) {
 
 TEST(WaveEngineOnRanks, MovesAsOnOneRankInSinglePrecision) {
   expect_same_on_ranks<float>(4, 1, Damping::memory, true, 1e-5);
+  expect_same_on_ranks<float>(3, 1, Damping::memory, false, 1e-5);
 }
 
 TEST(WaveEngineOnRanks, HoldsPartOfTheLatticeEach) {
