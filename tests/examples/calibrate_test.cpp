@@ -97,7 +97,7 @@ TEST(Calibrate, TakesImpulseResponsesInPlaceOfLayers) {
   };
   expect_refusal("--footprint 0.3 2.5", "must be 0.3 m x 2.5 m as --footprint says");
   expect_refusal("--foundations 3", "has no footprint 1.44 m away along the track");
-  expect_refusal("--band 2 70", "frequency = 70 Hz, must be <= 62.5");
+  expect_refusal("--band 2 120", "frequency = 120 Hz, must be <= 100");
 }
 
 TEST(Calibrate, TakesImpulseResponsesOfTheSameGroundOnly) {
