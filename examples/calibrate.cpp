@@ -79,9 +79,14 @@ track_on_soil::SiteClm calibrate(const Arguments& arguments) {
                     row.length, row.width, arguments.footprint[0], arguments.footprint[1]));
   track_on_soil::SiteClm clm = track_on_soil::calibrate_on_mobility(
       stored, file, arguments.spacing > 0 ? arguments.spacing : row.spacing, options);
-  if (!clm.belongs_to(site, clm.row))
-    throw InputError(
-        fmt::format("{}: the layers of its site are not those of {}", file, arguments.site.string()));
+  if (const std::string mismatch = clm.find_mismatch(site, clm.row); !mismatch.empty())
+    throw InputError(fmt::format("{}: cannot stand for {}: it {}", file, arguments.site.string(), mismatch));
+  if (clm.knows_blocks() && !site.blocks.empty())
+    fmt::print(
+        stderr,
+        "calibrate: warning: {}: by finite elements on a ground with blocks: coarse elements right below the "
+        "footprint are too stiff by 5 % and more, and so is the foundation\n",
+        file);
   return clm;
 }
 

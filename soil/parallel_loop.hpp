@@ -17,6 +17,7 @@ inline int count_threads(int asked) {
 }
 
 /// Calls work(i) for i = 0 ... count - 1 on some threads, in any order; rethrows the first error.
+/// @throws std::system_error if a thread cannot be created, after the others are done
 template <class Work>
 void for_each_parallel(Eigen::Index count, int threads, const Work& work) {
   std::atomic<Eigen::Index> next{0};
@@ -30,10 +31,10 @@ void for_each_parallel(Eigen::Index count, int threads, const Work& work) {
       if (!error) error = std::current_exception();
     }
   };
-  std::vector<std::thread> others;
+  std::vector<std::jthread> others;  // joined also where one cannot be created
   for (Eigen::Index t = 1; t < std::min<Eigen::Index>(threads, count); ++t) others.emplace_back(serve);
   serve();
-  for (std::thread& thread : others) thread.join();
+  others.clear();
   if (error) std::rethrow_exception(error);
 }
 

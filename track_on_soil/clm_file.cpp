@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 
 #include "easydyn/error.hpp"
+#include "soil/mobility_file.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/toml_table.hpp"
 
 namespace easydyn::track_on_soil {
@@ -16,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using soil::TomlTable;
 
-constexpr int format = 1;
+constexpr int format = 2, oldest_format = 1;
 
 std::string list_of(const Eigen::VectorXd& values) {
   return fmt::format("[{}]", fmt::join(values.begin(), values.end(), ", "));
@@ -49,6 +52,39 @@ Eigen::VectorXcd read_complex(const TomlTable& table, const std::string& key, Ei
   return values;
 }
 
+bool is_same_material(const soil::Layer& a, const soil::Layer& b) {
+  return a.density == b.density && a.cs == b.cs && a.cp == b.cp && a.damping == b.damping;
+}
+
+bool is_same_block(const soil::Block& a, const soil::Block& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.open == b.open && a.mirrored == b.mirrored &&
+         (a.open || is_same_material(a.material, b.material));
+}
+
+std::string describe(const soil::Layer& material) {
+  return fmt::format("density = {}\ncs = {}\ncp = {}\ndamping = {}\n", material.density, material.cs,
+                     material.cp, material.damping);
+}
+
+void read_material(const TomlTable& table, soil::Layer& material) {
+  material.density = table.number("density", "kg/m3", soil::positive);
+  material.cs = table.number("cs", "m/s", soil::positive);
+  material.cp = table.number("cp", "m/s", soil::positive);
+  material.damping = table.number("damping", "", soil::not_negative);
+}
+
+soil::Block read_block(const TomlTable& table) {
+  table.refuse_other_keys({"x", "y", "z", "open", "mirrored", "density", "cs", "cp", "damping"});
+  soil::Block block;
+  block.x = table.interval("x", "m", true);
+  block.y = table.interval("y", "m", true);
+  block.z = table.interval("z", "m", false);
+  block.open = table.flag("open", false);
+  block.mirrored = table.flag("mirrored", false);
+  if (!block.open) read_material(table, block.material);
+  return block;
+}
+
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0; begin < text.size();) {
@@ -61,17 +97,29 @@ std::vector<std::string> split(const std::string& text) {
 
 }  // namespace
 
-bool SiteClm::belongs_to(const soil::Site& site, const FootprintRow& footprints) const {
-  if (!(row == footprints) || damping_frequency != site.damping_frequency ||
-      layers.size() != site.layers.size())
-    return false;
-  for (std::size_t i = 0; i < layers.size(); ++i) {
+bool has_constant_ratio(soil::GroundDamping damping) {
+  return damping == soil::GroundDamping::maxwell_body || damping == soil::GroundDamping::constant_q;
+}
+
+bool SiteClm::knows_blocks() const {
+  return method == soil::element_method;
+}
+
+std::string SiteClm::find_mismatch(const soil::Site& site, const FootprintRow& footprints) const {
+  if (revision != fit_revision)
+    return fmt::format("is of revision {} of the fit, not {}", revision, fit_revision);
+  if (method != soil::layered_method && method != soil::element_method)
+    return fmt::format("is of an unknown method \"{}\"", method);
+  if (!has_constant_ratio(damping)) return fmt::format("has the damping \"{}\"", soil::name_of(damping));
+  if (!(row == footprints)) return "belongs to other footprints";
+  if (damping_frequency != site.damping_frequency) return "belongs to another damping frequency";
+  bool are_same = layers.size() == site.layers.size();
+  for (std::size_t i = 0; are_same && i < layers.size(); ++i) {
     const soil::Layer &a = layers[i], &b = site.layers[i];
-    if ((i + 1 < layers.size() && a.thickness != b.thickness) || a.density != b.density || a.cs != b.cs ||
-        a.cp != b.cp || a.damping != b.damping)
-      return false;
+    are_same = (i + 1 == layers.size() || a.thickness == b.thickness) && is_same_material(a, b);
   }
-  return true;
+  if (!are_same) return "belongs to other layers";
+  return std::ranges::equal(blocks, site.blocks, is_same_block) ? "" : "belongs to other blocks";
 }
 
 fs::path clm_file_of(const fs::path& site) {
@@ -82,7 +130,7 @@ void write_clm(const fs::path& path, const SiteClm& clm) {
   const track::Clm& c = clm.fit.clm;
   std::string text = fmt::format(
       R"(# Coupled lumped mass foundation of a track on a site: made by `calibrate` or by the program of a train.
-# It is used again as long as the layers and footprints of a run are those below. Delete it to have it made anew.
+# It is used again as long as the ground and footprints of a run are those below. Delete it to have it made anew.
 format = {}
 source = {}
 
@@ -99,20 +147,29 @@ width = {}  # m
 spacing = {}  # m
 
 [ground]
+method = {}  # of its compliance
+damping = {}
 damping_frequency = {}  # Hz
 )",
       format, quote(c.k_f.source), c.m_f.value, c.k_f.value, c.d_f.value, c.k_c.value, c.d_c.value,
-      clm.row.length, clm.row.width, clm.row.spacing, clm.damping_frequency);
+      clm.row.length, clm.row.width, clm.row.spacing, quote(clm.method), quote(soil::name_of(clm.damping)),
+      clm.damping_frequency);
   for (const soil::Layer& layer : clm.layers) {
     text += "\n[[ground.layer]]\n";
     if (&layer != &clm.layers.back()) text += fmt::format("thickness = {}\n", layer.thickness);
-    text += fmt::format("density = {}\ncs = {}\ncp = {}\ndamping = {}\n", layer.density, layer.cs, layer.cp,
-                        layer.damping);
+    text += describe(layer);
+  }
+  for (const soil::Block& block : clm.blocks) {
+    text += fmt::format(
+        "\n[[ground.block]]\nx = [{}, {}]\ny = [{}, {}]\nz = [{}, {}]\nopen = {}\nmirrored = {}\n",
+        block.x[0], block.x[1], block.y[0], block.y[1], block.z[0], block.z[1], block.open, block.mirrored);
+    if (!block.open) text += describe(block.material);
   }
   const track::ClmFit& fit = clm.fit;
   text += fmt::format(
       R"(
 [fit]
+revision = {}
 lowest = {}  # Hz
 highest = {}  # Hz
 foundations = {}  # of the chain; 0: infinitely many
@@ -127,7 +184,7 @@ left_out = {}
 [compliance]  # m/N, time factor exp(i w t)
 frequency = {}
 )",
-      clm.lowest, clm.highest, clm.foundations, quote(fit.system), fit.rms_00, fit.rms_01,
+      clm.revision, clm.lowest, clm.highest, clm.foundations, quote(fit.system), fit.rms_00, fit.rms_01,
       fit.stiffness_margin, fit.damping_margin, quote(fmt::format("{}", fmt::join(fit.bounds, "; "))),
       fit.left_out, list_of(fit.frequency));
   const std::pair<const char*, const Eigen::VectorXcd*> responses[] = {{"ground_00", &fit.ground_00},
@@ -161,7 +218,7 @@ SiteClm read_clm(const fs::path& path) {
   }
   const TomlTable root(path, "", parsed);
   root.refuse_other_keys({"format", "source", "clm", "footprint", "ground", "fit", "compliance"});
-  root.number("format", "", {.low = format, .high = format});
+  const double version = root.number("format", "", {.low = oldest_format, .high = format});
   SiteClm result;
   track::ClmFit& fit = result.fit;
 
@@ -182,7 +239,16 @@ SiteClm read_clm(const fs::path& path) {
                 footprint.number("spacing", "m", soil::positive)};
 
   const TomlTable ground = root.table("ground");
-  ground.refuse_other_keys({"damping_frequency", "layer"});
+  ground.refuse_other_keys({"damping_frequency", "method", "damping", "layer", "block"});
+  if (version > oldest_format) {
+    result.method = ground.text("method");
+    try {
+      result.damping = soil::find_ground_damping(ground.text("damping"));
+    } catch (const InputError& error) {
+      ground.fail("damping", error.what());
+    }
+    for (const TomlTable& table : ground.tables("block")) result.blocks.push_back(read_block(table));
+  }
   result.damping_frequency = ground.number("damping_frequency", "Hz", soil::positive);
   const std::vector<TomlTable> layers = ground.tables("layer");
   for (const TomlTable& table : layers) {
@@ -190,16 +256,15 @@ SiteClm read_clm(const fs::path& path) {
     soil::Layer layer;
     layer.thickness = &table == &layers.back() ? std::numeric_limits<double>::infinity()
                                                : table.number("thickness", "m", soil::positive);
-    layer.density = table.number("density", "kg/m3", soil::positive);
-    layer.cs = table.number("cs", "m/s", soil::positive);
-    layer.cp = table.number("cp", "m/s", soil::positive);
-    layer.damping = table.number("damping", "", soil::not_negative);
+    read_material(table, layer);
     result.layers.push_back(layer);
   }
 
   const TomlTable fitted = root.table("fit");
-  fitted.refuse_other_keys({"lowest", "highest", "foundations", "system", "rms_00", "rms_01",
+  fitted.refuse_other_keys({"revision", "lowest", "highest", "foundations", "system", "rms_00", "rms_01",
                             "stiffness_margin", "damping_margin", "bounds", "left_out"});
+  result.revision =
+      version > oldest_format ? static_cast<int>(fitted.number("revision", "", {.low = 0, .high = 1e6})) : 0;
   result.lowest = fitted.number("lowest", "Hz", soil::positive);
   result.highest = fitted.number("highest", "Hz", soil::positive);
   result.foundations = static_cast<int>(fitted.number("foundations", "", {.low = 0, .high = 1e6}));

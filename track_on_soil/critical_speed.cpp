@@ -41,10 +41,10 @@ void add_deflections(const track::TrackData& data, const soil::Site& site, const
     }
   };
   if (threads == 0) threads = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  std::vector<std::thread> team;
+  std::vector<std::jthread> team;  // joined also where one cannot be created
   for (int t = 1; t < threads; ++t) team.emplace_back(work);
   work();
-  for (std::thread& thread : team) thread.join();
+  team.clear();
   if (failure) std::rethrow_exception(failure);
 }
 

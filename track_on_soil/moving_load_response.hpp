@@ -18,7 +18,7 @@ namespace easydyn::track_on_soil {
 ///
 ///   C(k, w) = 1 / pi int_0^inf G_zz(sqrt(k^2 + k_y^2), w) (sin(k_y B / 2) / (k_y B / 2))^2 dk_y
 ///
-/// The detailed counterpart of compute_critical_speed(): where its maximum over s is largest over v, the load runs at the
+/// The detailed counterpart of find_mode_crossing(): where its maximum over s is largest over v, the load runs at the
 /// critical speed. Material damping of the ground: the site's ratio at all frequencies. Limits: as
 /// compute_free_track_wave(); the foundation of the data sheet does not enter.
 /// @param speed  [m/s], > 0

@@ -7,16 +7,21 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/require.hpp"
+#include "soil/mobility_identity.hpp"
 
 namespace easydyn::track_on_soil {
 namespace {
 
 SiteClm fit_to(const track::GroundCompliance& compliance, const soil::Site& site, const FootprintRow& row,
-               track::ClmFitOptions options) {
+               const std::string& method, soil::GroundDamping damping, track::ClmFitOptions options) {
   if (options.weight.size() == 0)  // each octave alike
     options.weight = compliance.frequency.cwiseInverse();
   return {site.layers,
+          site.blocks,
           site.damping_frequency,
+          method,
+          damping,
+          fit_revision,
           row,
           options.lowest,
           options.highest,
@@ -39,15 +44,21 @@ SiteClm calibrate_on_site(const soil::Site& site, const FootprintRow& row,
                           const track::ClmFitOptions& options, int threads) {
   return fit_to(compute_site_compliance(site, row, calibration_frequencies(options.lowest, options.highest),
                                         std::max(2, options.foundations), threads),
-                site, row, options);
+                site, row, soil::layered_method, soil::GroundDamping::constant_q, options);
 }
 
 SiteClm calibrate_on_mobility(const soil::StoredMobility& stored, const std::string& file, double spacing,
                               const track::ClmFitOptions& options) {
+  if (!has_constant_ratio(stored.damping))
+    throw InputError(
+        fmt::format("{}: damping = {}, must be {} or {}: a foundation is that of a constant damping ratio",
+                    file, soil::name_of(stored.damping), soil::name_of(soil::GroundDamping::maxwell_body),
+                    soil::name_of(soil::GroundDamping::constant_q)));
   return fit_to(
       transform_mobility(stored, file, spacing, calibration_frequencies(options.lowest, options.highest),
                          std::max(2, options.foundations)),
-      stored.site, {stored.mobility.length, stored.mobility.width, spacing}, options);
+      stored.site, {stored.mobility.length, stored.mobility.width, spacing}, stored.method, stored.damping,
+      options);
 }
 
 FoundationOnSite find_foundation(const std::filesystem::path& site_file, const soil::Site& site,
@@ -57,8 +68,9 @@ FoundationOnSite find_foundation(const std::filesystem::path& site_file, const s
   std::string why;
   if (std::filesystem::exists(cache)) {
     FoundationOnSite found{read_clm(cache), fmt::format("taken from {}", cache_name)};
-    if (found.clm.belongs_to(site, row)) return found;
-    why = fmt::format(", since {} belongs to other layers or footprints", cache_name);
+    const std::string mismatch = found.clm.find_mismatch(site, row);
+    if (mismatch.empty()) return found;
+    why = fmt::format(", since {} {}", cache_name, mismatch);
   }
   FoundationOnSite fitted{calibrate_on_site(site, row), fmt::format("fitted to {}{}", name, why)};
   try {

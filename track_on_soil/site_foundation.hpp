@@ -20,6 +20,7 @@ SiteClm calibrate_on_site(const soil::Site& site, const FootprintRow& row,
 
 /// The same from impulse responses, by finite elements or not.
 /// @param file  what messages and the source of the constants name
+/// @throws InputError if their damping is not that of a constant ratio (has_constant_ratio), or as transform_mobility()
 SiteClm calibrate_on_mobility(const soil::StoredMobility& stored, const std::string& file, double spacing,
                               const track::ClmFitOptions& options = {});
 
@@ -29,8 +30,8 @@ struct FoundationOnSite {
   std::string origin;  ///< a sentence, e.g. "fitted to tram.toml and written to tram.clm.toml"
 };
 
-/// Foundation of a track on a site: that of the file beside the site file (clm_file_of) if it belongs to these layers and
-/// footprints, whatever its band and chain; else fitted over 2 to 50 Hz to the infinite chain, each octave alike, and written there. Where it
+/// Foundation of a track on a site: that of the file beside the site file (clm_file_of) if it belongs to this ground and
+/// these footprints (SiteClm::find_mismatch), whatever its band, chain and method; else fitted over 2 to 50 Hz to the infinite chain, each octave alike, and written there. Where it
 /// cannot be written, `origin` says so.
 /// @throws InputError if a file cannot be read or is not what it should be, ModelError, SolverError as above
 FoundationOnSite find_foundation(const std::filesystem::path& site_file, const soil::Site& site,

@@ -47,10 +47,12 @@ std::string describe(const SiteOfRun& site) {
 
 std::vector<std::string> warn_of(const SiteOfRun& site) {
   if (site.site.blocks.empty()) return {};
-  return {fmt::format(
-      "{} has {} block{} of other material, which foundation and critical speed do not know: they are those "
-      "of the layers",
-      site.file.filename().string(), site.site.blocks.size(), site.site.blocks.size() == 1 ? "" : "s")};
+  const std::string blocks =
+      fmt::format("{} has {} block{} of other material, which ", site.file.filename().string(),
+                  site.site.blocks.size(), site.site.blocks.size() == 1 ? "" : "s");
+  if (site.foundation && !site.foundation->clm.knows_blocks())
+    return {blocks + "foundation and critical speed do not know: they are those of the layers"};
+  return {blocks + "the critical speed does not know: it is that of the layers"};
 }
 
 std::vector<Parameter> parameters_of(const SiteOfRun& site) {

@@ -13,13 +13,14 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Surface impedance of the elastic ground, scaled; its determinant is real below the half-space's shear wave speed.
+// Dispersion function of the elastic ground; real below the half-space's shear wave speed. The determinant of the surface's
+// impedance will not do: between two samples its poles hide the roots beside them.
 class Secular {
  public:
   Secular(const LayeredGround& ground, double w)
       : layers_(make_elastic(ground, w)), response_(layers_, 0, {}) {}
 
-  double operator()(double k) { return response_.compute_surface_determinant(k).real(); }
+  double operator()(double k) { return response_.compute_dispersion_function(k).real(); }
 
   // Wavenumbers of the shear waves.
   double slowest() const {
@@ -53,7 +54,8 @@ class Secular {
   WavenumberResponse response_;
 };
 
-// Bisection between opposite signs; NaN where the sign changes through infinity.
+// Bisection between opposite signs; NaN where the sign changes in a jump: where another layer comes within reach of the
+// waves and its factor enters.
 double find_root(Secular& D, double a, double b, double at_a, double at_b) {
   const double limit = std::max(std::abs(at_a), std::abs(at_b));
   double value = at_a;
@@ -66,7 +68,7 @@ double find_root(Secular& D, double a, double b, double at_a, double at_b) {
       b = middle;
     }
   }
-  return std::abs(value) <= limit ? (a + b) / 2 : std::numeric_limits<double>::quiet_NaN();
+  return std::abs(value) <= 1e-6 * limit ? (a + b) / 2 : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace easydyn::soil {
 
 /// Phase speeds c [m/s] of the Rayleigh modes of the elastic ground (real parts of its moduli at that frequency), slowest
-/// first: the fundamental mode, then the higher ones. They are the roots of the determinant of the surface's impedance at k =
+/// first: the fundamental mode, then the higher ones. They are the roots of WavenumberResponse::compute_dispersion_function() at k =
 /// 2 pi f / c below the shear wave speed of the half-space; faster waves leak into it and are no modes. Modes guided by a
 /// slow layer so deep that the surface does not feel them (e^-45) are left out.
 /// @param frequency  [Hz], > 0

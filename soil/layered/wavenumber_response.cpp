@@ -12,8 +12,12 @@ using Matrix = Eigen::Matrix2cd;
 
 constexpr double invisible = 45;  // e^-45 is below the rounding of 1
 
+Complex determinant(const Matrix& m) {
+  return m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0);
+}
+
 Matrix invert(const Matrix& m) {
-  const Complex scale = 1.0 / (m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0));
+  const Complex scale = 1.0 / determinant(m);
   Matrix inverse;
   inverse << m(1, 1) * scale, -m(0, 1) * scale, -m(1, 0) * scale, m(0, 0) * scale;
   return inverse;
@@ -152,6 +156,7 @@ void WavenumberResponse::Column::update(double k) {
     }
     const Propagator E = propagate(piece.a, piece.b, m.speed_ratio2, m.thickness);
     const Matrix A_up = mirror_rows(piece.A), B_up = -mirror_rows(piece.B);
+    piece.Z_below = Z;
     const Matrix R = -(invert(B_up - Z * A_up) * (piece.B - Z * piece.A));
     piece.reflected = R * E;
     const Matrix back = E * piece.reflected;
@@ -226,7 +231,21 @@ Complex WavenumberResponse::compute_surface_determinant(double k) {
   assert(above_.pieces.empty());
   below_.update(k);
   const double scale = first_modulus_ * k;
-  return (below_.Z(0, 0) * below_.Z(1, 1) - below_.Z(0, 1) * below_.Z(1, 0)) / (scale * scale);
+  return determinant(below_.Z) / (scale * scale);
+}
+
+Complex WavenumberResponse::compute_dispersion_function(double k) {
+  Complex product = compute_surface_determinant(k);
+  for (int i = 0; i + 1 < below_.active; ++i) {
+    const Piece& piece = below_.pieces[static_cast<std::size_t>(i)];
+    const LayerAtFrequency& m = piece.material;
+    const Complex at_end = determinant(-mirror_rows(piece.B) - piece.Z_below * mirror_rows(piece.A));
+    const Complex phase = std::exp(Complex(0, -m.thickness * (piece.a + piece.b).imag()));
+    // Divided by |det A|^2, which has no zero, and by |mu|^2 so that it is of order 1 in every layer.
+    product *= at_end /
+               (determinant(piece.down) * piece.a * piece.b * phase * std::norm(m.mu * determinant(piece.A)));
+  }
+  return product;
 }
 
 }  // namespace easydyn::soil

@@ -46,6 +46,13 @@ class WavenumberResponse {
   /// Rayleigh mode (undamped ground), relative to that of the static ground so that it is of order 1.
   std::complex<double> compute_surface_determinant(double k);
 
+  /// The same without poles: the impedance of the surface is infinite at the modes of the ground held at its surface, which lie
+  /// between the Rayleigh modes and may come as near to them as one likes. This is the determinant of all waves of all layers
+  /// at once, free surface and continuous interfaces (det Z times what the recursion divides by), with the trivial zeros at
+  /// a = 0 and b = 0 and the phases of travelling waves taken out: on undamped ground real for k above the wavenumber of the
+  /// half-space's shear waves, where it vanishes at the Rayleigh modes and nowhere else.
+  std::complex<double> compute_dispersion_function(double k);
+
  private:
   using Matrix = Eigen::Matrix2cd;
 
@@ -56,6 +63,7 @@ class WavenumberResponse {
     Matrix A, B;
     Matrix down;       // waves at its start per displacement there
     Matrix reflected;  // upgoing waves at its end per downgoing waves at its start
+    Matrix Z_below;    // impedance at its end; unset where the column ends with it
     std::complex<double> down_y, reflected_y;
   };
   // Layers from the loaded plane outward, z positive outward; its end is a half-space or a free surface.

@@ -8,6 +8,7 @@
 
 #include "easydyn/results/result_file.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/mobility_prediction.hpp"
 #include "soil/recoupling.hpp"
 #include "soil/site_file.hpp"
@@ -96,7 +97,60 @@ TEST(Calibrate, TakesImpulseResponsesInPlaceOfLayers) {
   };
   expect_refusal("--footprint 0.3 2.5", "must be 0.3 m x 2.5 m as --footprint says");
   expect_refusal("--foundations 3", "has no footprint 1.44 m away along the track");
-  expect_refusal("--band 2 110", "frequency = 110 Hz, must be <= 100");
+  expect_refusal("--band 2 120", "frequency = 120 Hz, must be <= 100");
+}
+
+TEST(Calibrate, TakesImpulseResponsesOfTheSameGroundOnly) {
+  const TemporaryFolder folder;
+  const fs::path site = copy_site(folder, "tram.toml"), blocks = folder.path() / "blocks.toml",
+                 file = folder.path() / "tram.mobility.h5";
+  fs::copy_file(site, blocks);
+  std::ofstream(blocks, std::ios::app)
+      << "\n[[block]]\nx = [-inf, inf]\ny = [5, 6]\nz = [-4, 0]\nopen = true\nmirrored = true\n";
+  const std::vector<soil::Footprint> footprints = {{.x = 0, .y = 0, .length = 0.285, .width = 2.5},
+                                                   {.x = 0.72, .y = 0, .length = 0.285, .width = 2.5}};
+  soil::StoredMobility stored =
+      compute_mobility(soil::read_site(site), footprints, soil::GroundDamping::maxwell_body);
+  const auto calibrate_with = [&](const fs::path& ground) {
+    write_mobility(file, stored, {.program = "test", .command = "test", .convention = "z up"});
+    return call(CALIBRATE_PROGRAM " " + ground.string() + " --output " + folder.path().string() +
+                " --mobility " + file.string());
+  };
+  stored.damping = soil::GroundDamping::none;
+  const Outcome undamped = calibrate_with(site);
+  EXPECT_EQ(undamped.status, 1);
+  EXPECT_THAT(undamped.text, HasSubstr("damping = none, must be constant or constant-q"));
+  stored.damping = soil::GroundDamping::maxwell_body;
+
+  // As finite elements would have written it; what the responses are does not matter here.
+  stored.method = soil::element_method;
+  stored.site = soil::read_site(blocks);
+  const Outcome other = calibrate_with(site);
+  EXPECT_EQ(other.status, 1);
+  EXPECT_THAT(other.text, HasSubstr("tram.toml: it belongs to other blocks"));
+  EXPECT_FALSE(fs::exists(folder.path() / "tram.clm.toml"));
+  const Outcome same = calibrate_with(blocks);
+  EXPECT_EQ(same.status, 0) << same.text;
+  EXPECT_THAT(same.text,
+              HasSubstr("warning: " + file.string() + ": by finite elements on a ground with blocks"));
+  EXPECT_TRUE(track_on_soil::read_clm(folder.path() / "blocks.clm.toml").knows_blocks());
+
+  const auto run_on = [&](const std::string& options) {
+    const Outcome run =
+        call(TRAM_PROGRAM " --time-step 5e-4 --speed 50 --detail moving-loads --loaded 8 --site " +
+             blocks.string() + " --output " + (folder.path() / "out").string() + options);
+    EXPECT_EQ(run.status, 0) << run.text;
+    return run.text;
+  };
+  EXPECT_THAT(run_on(""),
+              AllOf(HasSubstr("foundation taken from blocks.clm.toml"),
+                    HasSubstr("which the critical speed does not know: it is that of the layers")));
+  fs::remove(folder.path() / "blocks.clm.toml");
+  EXPECT_THAT(run_on(""),
+              HasSubstr("foundation and critical speed do not know: they are those of the layers"));
+
+  stored.site = soil::read_site(site);
+  EXPECT_THAT(calibrate_with(site).text, Not(HasSubstr("warning")));
 }
 
 TEST(Calibrate, RefusesWhatIsMissingOrOutOfRange) {

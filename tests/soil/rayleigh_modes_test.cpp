@@ -50,6 +50,58 @@ TEST(RayleighModes, RunFromTheHalfSpaceToTheUppermostLayer) {
   EXPECT_GT(compute_rayleigh_speeds(ground, 100).size(), 4u);
 }
 
+/// Elastic layers as of the bundled site of the high-speed train (examples/sites/hst.toml): thickness, cs, nu, density.
+Site three_layers() {
+  Site site;
+  site.layers = {make_layer(1.4, 80, 0.33, 1850, 0), make_layer(1.9, 133, 0.33, 1850, 0),
+                 make_layer(0, 226, 0.33, 1850, 0)};
+  return site;
+}
+
+TEST(RayleighModes, AreRootsOfTheDeterminantOfTheSurfaceAndNoPoles) {
+  const LayeredGround ground(three_layers(), GroundDamping::none);
+  for (int i = 1; i <= 320; ++i) {
+    const double f = 0.25 * i, w = 2 * pi * f;
+    WavenumberResponse response(ground.compute_layers(w), 0, {});
+    for (const double speed : compute_rayleigh_speeds(ground, f)) {
+      // Linear about a root, whatever its slope: a hundredth at a hundredth of the distance. About a pole: a hundredfold.
+      const auto value_at = [&](double distance) {
+        return std::abs(response.compute_surface_determinant(w / speed * (1 + distance)));
+      };
+      for (const double side : {-1, 1})
+        EXPECT_LT(value_at(1e-10 * side), 0.02 * value_at(1e-8 * side)) << f << " Hz, " << speed << " m/s";
+    }
+  }
+}
+
+TEST(RayleighModes, AreContinuousInFrequency) {
+  const LayeredGround ground(three_layers(), GroundDamping::none);
+  constexpr double step = 0.25;  // [Hz]
+  std::vector<double> before = compute_rayleigh_speeds(ground, step);
+  for (double f = 2 * step; f <= 80; f += step) {
+    const std::vector<double> speeds = compute_rayleigh_speeds(ground, f);
+    // Waves become slower with frequency on ground that is stiffer below; a new mode enters at the half-space's cs.
+    ASSERT_GE(speeds.size(), before.size()) << f << " Hz";
+    ASSERT_LE(speeds.size(), before.size() + 1) << f << " Hz";
+    for (std::size_t mode = 0; mode < before.size(); ++mode) {
+      EXPECT_LT(speeds[mode], before[mode]) << "mode " << mode << ", " << f << " Hz";
+      EXPECT_GT(speeds[mode], before[mode] - 20 * step) << "mode " << mode << ", " << f << " Hz";
+    }
+    before = speeds;
+  }
+  EXPECT_GE(before.size(), 4u);
+}
+
+TEST(RayleighModes, BesideAPoleAreFound) {
+  // At 35 Hz a root and a pole of the surface's determinant lie so near to each other that it has one sign on both sides.
+  const LayeredGround ground(three_layers(), GroundDamping::none);
+  const std::vector<double> at_34 = compute_rayleigh_speeds(ground, 34),
+                            at_35 = compute_rayleigh_speeds(ground, 35),
+                            at_36 = compute_rayleigh_speeds(ground, 36);
+  ASSERT_EQ(at_35.size(), 3u);
+  EXPECT_NEAR(at_35[1], (at_34[1] + at_36[1]) / 2, 0.1);  // second difference of the mode: 0.1 m/s
+}
+
 TEST(RayleighModes, ArePeaksOfTheGreensFunction) {
   // With little damping (0.05 %) the surface moves most at the wavenumbers of the modes: where |u_z| has its local
   // maxima along k. A peak is met within its width, 5e-4 k.

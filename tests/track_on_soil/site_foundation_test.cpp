@@ -53,11 +53,30 @@ TEST(SiteFoundation, IsFittedAnewForOtherLayersOrFootprintsOnly) {
             "taken from site.clm.toml");
   const FoundationOnSite stiffer = place.find(two_layers(150));
   EXPECT_EQ(stiffer.origin,
-            "fitted to site.toml, since site.clm.toml belongs to other layers or footprints, and written to "
+            "fitted to site.toml, since site.clm.toml belongs to other layers, and written to "
             "site.clm.toml");
   EXPECT_GT(stiffer.clm.fit.clm.k_f, 1.2 * k_f);
-  EXPECT_THAT(place.find(two_layers(150), {0.3, 2.4, 0.72}).origin, HasSubstr("other layers or footprints"));
+  EXPECT_THAT(place.find(two_layers(150), {0.3, 2.4, 0.72}).origin, HasSubstr("belongs to other footprints"));
   EXPECT_EQ(place.find(two_layers(150), {0.3, 2.4, 0.72}).origin, "taken from site.clm.toml");
+}
+
+TEST(SiteFoundation, IsFittedAnewForOtherBlocks) {
+  const Place place;
+  place.find(two_layers());
+  const std::string trench = "[[block]]\nx = [-inf, inf]\ny = [5, 6]\nz = [-4, 0]\nopen = true\n";
+  EXPECT_THAT(place.find(two_layers(120, trench)).origin, HasSubstr("site.clm.toml belongs to other blocks"));
+  EXPECT_EQ(place.find(two_layers(120, trench)).origin, "taken from site.clm.toml");
+}
+
+TEST(SiteFoundation, IsRefusedToResponsesWithoutAConstantDampingRatio) {
+  soil::StoredMobility stored;
+  for (const soil::GroundDamping damping :
+       {soil::GroundDamping::none, soil::GroundDamping::stiffness_proportional}) {
+    stored.damping = damping;
+    EXPECT_THAT([&] { calibrate_on_mobility(stored, "a.mobility.h5", 0.6); },
+                ThrowsMessage<InputError>(HasSubstr("a.mobility.h5: damping = " + soil::name_of(damping) +
+                                                    ", must be constant or constant-q")));
+  }
 }
 
 TEST(SiteFoundation, KeepsABandAndAChainThatSomebodyChose) {
