@@ -296,7 +296,7 @@ TEST(LayeredMobility, TellsOfALayerThatRingsOn) {
   EXPECT_GT(cut_off.rest.share, 0.1);
   EXPECT_EQ(cut_off.rest.where, "a receiver at (0, 20, 0) m from the footprint");
   EXPECT_EQ(cut_off.parameters.back().value, cut_off.rest.share);
-  const StoredMobility whole = compute(40);
+  const StoredMobility whole = compute(20);
   std::printf("rest %.5f at %s\n", whole.rest.share, whole.rest.where.c_str());
   EXPECT_LT(whole.rest.share, ResponseRest::accepted);
 }
