@@ -301,6 +301,17 @@ TEST(LayeredMobility, TellsOfALayerThatRingsOn) {
   EXPECT_LT(whole.rest.share, ResponseRest::accepted);
 }
 
+TEST(LayeredMobility, RefusesWhatDoesNotFitInMemory) {
+  // 1e6 places, 1e4 s at 40 Hz: 1.6e6 samples of 3e6 displacements, 8 byte for each and 7 for its spectrum: 72 TB.
+  Mobility mobility;
+  mobility.length = mobility.width = 1;
+  mobility.places.assign(1000000, {0, 4, 0});
+  EXPECT_THAT(
+      [&] { update_mobility(LayeredGround(make_site(), GroundDamping::maxwell_body), 40, mobility, 1e4); },
+      ::testing::ThrowsMessage<ModelError>(
+          ::testing::HasSubstr("0 of footprints need 7.2e+04 GB of memory")));
+}
+
 TEST(Superposition, RefusesWhatDoesNotFit) {
   Site site = make_site();
   SurfaceLoads loads = make_loads();
