@@ -7,6 +7,7 @@
 #include "easydyn/error.hpp"
 #include "soil/layered/layered_prediction.hpp"
 #include "soil/ranks.hpp"
+#include "soil/response_rest.hpp"
 #include "soil/site.hpp"
 #include "soil/stop_signal.hpp"
 
@@ -103,6 +104,15 @@ std::string join_names(const std::vector<fs::path>& files) {
   std::string names;
   for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.string();
   return names;
+}
+
+void warn_of_rest(const ResponseRest& rest) {
+  if (rest.share <= ResponseRest::accepted) return;
+  fmt::print(
+      stderr,
+      "soil: warning: {:.2g} % of the largest response of {} are left in the last tenth of its window of "
+      "{:.3g} s: the motion is cut off, soil mobility --window gives a longer one\n",
+      100 * rest.share, rest.where, rest.window);
 }
 
 void warn_of_unusual_values(const fs::path& path, const Site& site) {

@@ -46,6 +46,9 @@ std::filesystem::path prepare_result(const std::filesystem::path& folder);
 /// The files in their order, for messages.
 std::string join_names(const std::vector<std::filesystem::path>& files);
 
+/// Warning on standard error of responses that have not died out within their window.
+void warn_of_rest(const struct ResponseRest& rest);
+
 /// Warnings on standard error about values of the site that look like a wrong unit.
 void warn_of_unusual_values(const std::filesystem::path& path, const Site& site);
 

@@ -123,32 +123,38 @@ Mobility take_far_shifts(Mobility& distances) {
   return far;
 }
 
-void append_shifts(const Mobility& from, Mobility& to) {
-  Eigen::MatrixXd mean(to.mean.rows(), to.mean.cols() + from.mean.cols());
-  mean << to.mean, from.mean;
-  to.mean = std::move(mean);
-  to.shifts.insert(to.shifts.end(), from.shifts.begin(), from.shifts.end());
+// Puts the shifts of `from` in the place of those of `to`, or behind them. The shorter responses are continued by zeros.
+void set_shifts(const Mobility& from, Mobility& to) {
+  const Index rows = std::max(from.mean.rows(), to.mean.rows());
+  for (Eigen::MatrixXd* h : {&to.hx, &to.hy, &to.hz, &to.mean})
+    h->conservativeResizeLike(Eigen::MatrixXd::Zero(rows, h->cols()));
+  for (std::size_t s = 0; s < from.shifts.size(); ++s) {
+    const auto there = std::find(to.shifts.begin(), to.shifts.end(), from.shifts[s]);
+    const auto column = static_cast<Index>(there - to.shifts.begin());
+    if (there == to.shifts.end()) {
+      to.shifts.push_back(from.shifts[s]);
+      to.mean.conservativeResize(Eigen::NoChange, column + 1);
+    }
+    to.mean.col(column).setZero();
+    to.mean.col(column).head(from.mean.rows()) = from.mean.col(static_cast<Index>(s));
+  }
 }
 
-double compute_rest(const Mobility& m) {
-  const Index last = (m.hz.rows() - m.before) / 10;
-  double rest = 0;
-  for (const Eigen::MatrixXd* h : {&m.hx, &m.hy, &m.hz, &m.mean}) {
-    if (h->size() == 0) continue;
-    const double largest = h->cwiseAbs().maxCoeff();
-    if (largest > 0) rest = std::max(rest, h->bottomRows(last).cwiseAbs().maxCoeff() / largest);
-  }
-  return rest;
+// Longest side of the elements under the load.
+double find_element_side(const Lattice& lattice) {
+  return std::max(lattice.x[1] - lattice.x[0], lattice.y[1] - lattice.y[0]);
 }
 
 }  // namespace
 
 double estimate_element_window(const Site& site, const Mobility& distances) {
+  Mobility near = distances;
+  if (site.blocks.empty()) take_far_shifts(near);
   double slowest = site.layers.front().cs;
   for (const Layer& layer : site.layers) slowest = std::min(slowest, layer.cs);
   for (const Block& block : site.blocks)
     if (!block.open) slowest = std::min(slowest, block.material.cs);
-  return distances.farthest() / (0.8 * slowest) + 0.5;
+  return near.farthest() / (0.8 * slowest) + 0.5;
 }
 
 ElementMobility::ElementMobility(const Site& site, const std::vector<Footprint>& footprints,
@@ -162,7 +168,27 @@ ElementMobility::ElementMobility(const Site& site, const std::vector<Footprint>&
       model_(make_model(site, near_, window_ - pulse_.time(0))),
       solver_(model_, pulse_, make_options(options.solver, near_)) {}
 
+Mobility ElementMobility::compute_layered_shifts(GroundDamping damping) {
+  Mobility layered = far_;
+  const LayeredGround ground(site_, damping);
+  const double side = find_element_side(solver_.lattice());
+  for (const auto& shift : near_.shifts)
+    if (std::hypot(shift[0], shift[1]) < side) layered.shifts.push_back(shift);
+  layered.length = near_.length;
+  layered.width = near_.width;
+  const double window = far_.shifts.empty() ? 0 : estimate_window(ground.slowest_cs(), far_);
+  update_mobility(ground, site_.highest_frequency, layered, std::max(window, window_),
+                  options_.solver.threads);
+  return layered;
+}
+
 StoredMobility ElementMobility::compute(const RunControl& control) {
+  const GroundDamping damping = options_.solver.damping == DampingModel::none ? GroundDamping::none
+                                : options_.solver.damping == DampingModel::stiffness_proportional
+                                    ? GroundDamping::stiffness_proportional
+                                    : GroundDamping::maxwell_body;
+  // Before the run, which looks at once whether it is to stop.
+  const Mobility layered = site_.blocks.empty() ? compute_layered_shifts(damping) : Mobility{};
   const GroundMotion motion = solver_.run(control);
   const ImpulseSynthesis synthesis(site_.highest_frequency, window_);
   const Index lines = synthesis.w().size(), nt = motion.time.size();
@@ -190,10 +216,8 @@ StoredMobility ElementMobility::compute(const RunControl& control) {
   StoredMobility stored;
   stored.site = site_;
   stored.method = element_method;
-  stored.damping = options_.solver.damping == DampingModel::none ? GroundDamping::none
-                   : options_.solver.damping == DampingModel::stiffness_proportional
-                       ? GroundDamping::stiffness_proportional
-                       : GroundDamping::maxwell_body;
+  stored.damping = damping;
+  stored.window = window_;
   stored.identity = describe_responses(site_, stored.damping, &options_.solver);
   add_mesh(stored.parameters, site_, solver_);
   stored.mobility = near_;
@@ -203,15 +227,18 @@ StoredMobility ElementMobility::compute(const RunControl& control) {
   synthesis.update(
       stored.mobility, integrate(motion.vx), integrate(motion.vy), integrate(motion.vz),
       transform(motion.footprint_displacement.rightCols(static_cast<Index>(near_.shifts.size()))));
-  rest_ = compute_rest(stored.mobility);
+  stored.rest = find_rest(stored.mobility);
+  if (site_.blocks.empty()) {
+    if (const ResponseRest rest = find_rest(layered); rest.share > stored.rest.share) stored.rest = rest;
+    set_shifts(layered, stored.mobility);
+    stored.parameters.push_back({"mesh", "footprints nearer to each other are by the layered half-space",
+                                 find_element_side(solver_.lattice()), "m", "computed"});
+  }
   if (!far_.shifts.empty()) {
-    Mobility far = far_;
-    update_mobility(LayeredGround(site_, stored.damping), site_.highest_frequency, far, window_,
-                    options_.solver.threads);
-    append_shifts(far, stored.mobility);
     stored.parameters.push_back({"mesh", "footprints farther away along x are by the layered half-space",
                                  find_reach(near_), "m", "computed"});
   }
+  stored.parameters.push_back(describe_rest(stored.rest));
   return stored;
 }
 

@@ -28,7 +28,9 @@ struct ElementMobilityOptions {
 /// it and 1.75 times it the responses hold what the mesh makes of it, but loads have nothing there.
 ///
 /// The lattice reaches as far along x as receivers are from loads. Footprints are farther from each other: on a site without
-/// blocks the responses beyond are those of the layered half-space, which saves half of the mesh.
+/// blocks the responses beyond are those of the layered half-space, in a window of their own, which saves half of the
+/// mesh. So are those of footprints nearer to each other than an element is long, the loaded one first of all: elements
+/// that only resolve the waves are too stiff under a smaller load. With blocks these are as the elements have them.
 ///
 /// The ground may vary with y and z: blocks without ends along x, symmetric about y = 0.
 class ElementMobility {
@@ -41,16 +43,14 @@ class ElementMobility {
   WaveSolver& solver() { return solver_; }
   const Site& model() const { return model_; }          ///< the site with the receivers of the run
   const SurfaceLoads& pulse() const { return pulse_; }  ///< [N]
-  double window() const { return window_; }             ///< [s] of the responses, from the pulse on
+  double window() const { return window_; }  ///< [s] of the responses, by elements, from the pulse on
 
   /// @throws SolverError if the motion grows without bound, RunStopped if the run was stopped
   StoredMobility compute(const RunControl& control = {});
 
-  /// Largest response in the last tenth of the window over the largest one there is, of those just computed: small if the
-  /// motion had died out.
-  double rest() const { return rest_; }
-
  private:
+  Mobility compute_layered_shifts(GroundDamping damping);
+
   Site site_;
   ElementMobilityOptions options_;
   Mobility near_, far_;  // distances by elements; shifts by the layered half-space
@@ -58,10 +58,9 @@ class ElementMobility {
   SurfaceLoads pulse_;
   Site model_;
   WaveSolver solver_;
-  double rest_ = 0;
 };
 
-/// Way of the slowest waves to the farthest of these receivers and footprints, and half a second in which echoes die
+/// Way of the slowest waves to the farthest of those of these receivers and footprints that elements compute, and half a second in which echoes die
 /// out [s].
 double estimate_element_window(const Site& site, const Mobility& distances);
 

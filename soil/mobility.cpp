@@ -24,6 +24,21 @@ double Mobility::farthest() const {
   return farthest;
 }
 
+double Mobility::window() const {
+  return step * static_cast<double>(hz.rows() - before);
+}
+
+std::string name_footprint(const std::vector<Footprint>& footprints, std::size_t index) {
+  const int source = footprints[index].source;
+  const auto of_source = [&](const Footprint& f) { return f.source == source; };
+  if (std::all_of(footprints.begin(), footprints.end(), of_source))
+    return fmt::format("footprint {}", index + 1);
+  const auto first = footprints.begin();
+  return fmt::format("footprint {} of load file {}",
+                     std::count_if(first, first + static_cast<std::ptrdiff_t>(index), of_source) + 1,
+                     source + 1);
+}
+
 Mobility list_distances(const std::vector<Footprint>& footprints, const std::vector<Receiver>& receivers) {
   if (footprints.empty()) throw ModelError("superposition: no footprint");
   const Footprint& first = footprints.front();
@@ -36,9 +51,10 @@ Mobility list_distances(const std::vector<Footprint>& footprints, const std::vec
   for (std::size_t j = 0; j < footprints.size(); ++j) {
     const Footprint& f = footprints[j];
     if (std::abs(f.length - first.length) > 1e-6 || std::abs(f.width - first.width) > 1e-6) {
-      throw ModelError(
-          fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m like the first", j + 1,
-                      f.length, f.width, first.length, first.width));
+      throw ModelError(fmt::format(
+          "superposition: {} is {} m x {} m, must be {} m x {} m like {} (soil run takes any sizes)",
+          name_footprint(footprints, j), f.length, f.width, first.length, first.width,
+          name_footprint(footprints, 0)));
     }
     if (f.direction != LoadDirection::down) mobility.horizontal[f.direction];
     for (const Receiver& r : receivers) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "soil/site.hpp"
@@ -37,11 +38,15 @@ struct Mobility {
   std::map<LoadDirection, HorizontalResponse> horizontal;
 
   double farthest() const;  ///< [m] of places and shifts
+  double window() const;    ///< [s] of the samples after t = 0
 };
 
 /// Signs of u_x, u_y, u_z at (dx, dy) over those at (|dx|, |dy|): the mirror image about x = 0 turns u_x and a load along x
 /// round, that about y = 0 u_y and a load along y.
 std::array<double, 3> symmetry_signs(LoadDirection direction, double dx, double dy);
+
+/// "footprint 3", or, where there are several sources, "footprint 3 of load file 2".
+std::string name_footprint(const std::vector<Footprint>& footprints, std::size_t index);
 
 /// Distances between the footprints of the loads and the receivers, and among the footprints, each once (to 1e-6 m), and the
 /// directions of the loads, as empty responses.

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -78,10 +79,9 @@ std::string find_reason(const fs::path& file, const std::vector<std::string>& id
   if (stored.identity.empty()) return "it is of an earlier version of the program";
   if (const std::string difference = find_difference(stored.identity, identity); !difference.empty())
     return difference;
-  const Mobility& m = stored.mobility;
-  const double covered = m.step * static_cast<double>(m.hz.rows() - m.before);
-  if (covered < window) return fmt::format("responses of {} s there, {} s here", covered, window);
-  return find_missing(m, needed);
+  // A distance that is missing says more than the longer window that it needs.
+  if (const std::string missing = find_missing(stored.mobility, needed); !missing.empty()) return missing;
+  return find_shortage(stored, window);
 }
 
 // A checkpoint of the same run is gone on with.
@@ -111,11 +111,12 @@ StoredMobility compute_by_elements(ElementMobility& mobility, RunControl control
 void print_mobility(const StoredMobility& stored) {
   const Mobility& m = stored.mobility;
   fmt::print("method     {}\nfootprint  {} m x {} m\n", stored.method, m.length, m.width);
-  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints\n",
-             m.step * static_cast<double>(m.hz.rows() - m.before), m.places.size(), m.shifts.size());
+  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints\n", stored.window,
+             m.places.size(), m.shifts.size());
 }
 
-void run(const Arguments& arguments, const std::string& command_line) {
+// The exit status.
+int run(const Arguments& arguments, const std::string& command_line) {
   const auto start = std::chrono::steady_clock::now();
   const Site site = read_site(arguments.site);
   warn_of_unusual_values(arguments.site, site);
@@ -127,12 +128,17 @@ void run(const Arguments& arguments, const std::string& command_line) {
   const GroundDamping damping = find_ground_damping(arguments.damping);
 
   if (fs::exists(output) && !arguments.force) {
+    const Mobility needed = list_distances(footprints, site.receivers);
+    const double window = arguments.window > 0 ? arguments.window
+                          : arguments.has_elements()
+                              ? estimate_element_window(site, needed)
+                              : estimate_window(LayeredGround(site, damping).slowest_cs(), needed);
     const std::string reason = find_reason(
         output, describe_responses(site, damping, arguments.has_elements() ? &options.solver : nullptr),
-        list_distances(footprints, site.receivers), arguments.window);
+        needed, window);
     if (reason.empty()) {
       fmt::print("{}: up to date\n", output.string());
-      return;
+      return 0;
     }
     fmt::print("{}: does not hold any more: {}\n", output.string(), reason);
   }
@@ -145,13 +151,15 @@ void run(const Arguments& arguments, const std::string& command_line) {
     const RunControl control = make_control(checkpoint);
     print_run_summary(stdout, mobility.model(), mobility.pulse(), mobility.solver());
     print_file_summary(stdout, mobility.solver(), control);
-    if (arguments.dry_run) return;
-    stored = compute_by_elements(mobility, control, checkpoint);
-    fmt::print("at the end {:.2g} of the largest response is left\n", mobility.rest());
+    if (arguments.dry_run) return 0;
+    const int status =
+        run_stoppable([&] { stored = compute_by_elements(mobility, control, checkpoint); }, command_line);
+    if (status != 0) return status;
   } else {
-    if (arguments.dry_run) return;
+    if (arguments.dry_run) return 0;
     stored = compute_mobility(site, footprints, damping, arguments.window, arguments.options.threads);
   }
+  warn_of_rest(stored.rest);
   set_aside(output);
   write_mobility(output, stored,
                  {.program = "soil", .command = command_line, .convention = result_convention});
@@ -162,14 +170,29 @@ void run(const Arguments& arguments, const std::string& command_line) {
              results::format_duration(
                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()),
              output.string());
+  return 0;
 }
 
-int run_naming_the_site(const Arguments& arguments, const std::string& command_line) {
+int run_naming_the_files(const Arguments& arguments, const std::string& command_line) {
   try {
-    return run_stoppable([&] { run(arguments, command_line); }, command_line);
-  } catch (const ModelError& error) {  // site and footprints do not fit: say which file
-    throw ModelError(fmt::format("{}: {}", arguments.site.string(), error.what()));
+    return run(arguments, command_line);
+  } catch (const ModelError& error) {  // site and footprints do not fit: say which files
+    std::string files = arguments.site.string();
+    if (!arguments.loads.empty()) files += ", " + join_names(arguments.loads);
+    throw ModelError(fmt::format("{}: {}", files, error.what()));
   }
+}
+
+// Options that would do nothing.
+void refuse_idle_options(const Arguments& arguments, const CLI::App& command) {
+  const auto refuse = [&](std::initializer_list<const char*> names, const char* reason) {
+    for (const char* const name : names)
+      if (command.count(name) > 0) throw InputError(fmt::format("{}: {}", name, reason));
+  };
+  if (!arguments.has_elements())
+    refuse({"--degree", "--double", "--crossover"}, "is for --method elements, the method is layered");
+  if (!arguments.loads.empty())
+    refuse({"--footprint", "--spacing", "--count"}, "the footprints are those of --loads, give one of both");
 }
 
 }  // namespace
@@ -216,8 +239,10 @@ Action add_mobility_command(CLI::App& app) {
       "-n,--dry-run", arguments->dry_run,
       "Say whether the file holds; if not, print mesh, memory, steps and expected time, and stop");
   command.add_flag("--force", arguments->force, "Compute even if the file holds");
-  return
-      [arguments](const std::string& command_line) { return run_naming_the_site(*arguments, command_line); };
+  return [arguments, &command](const std::string& command_line) {
+    refuse_idle_options(*arguments, command);
+    return run_naming_the_files(*arguments, command_line);
+  };
 }
 
 }  // namespace easydyn::soil

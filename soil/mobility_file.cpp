@@ -118,6 +118,13 @@ void write_mobility(const std::filesystem::path& path, const StoredMobility& sto
       m.hz.rows(), [&](Index i) { return m.step * static_cast<double>(i - m.before); });
   file.write_vector("/time", time,
                     {.units = "s", .description = "time after the impulse", .frame = "scalar"});
+  if (stored.window > 0) {
+    file.write_vector("/window", Eigen::VectorXd::Constant(1, stored.window),
+                      {.units = "s",
+                       .description = "length of the responses after the impulse; only those of far "
+                                      "footprints go on to the end of /time",
+                       .frame = "scalar"});
+  }
   file.write_vector("/footprint/size", Eigen::Vector2d(m.length, m.width),
                     {.units = "m", .description = "length along x and width along y", .frame = axes});
   file.write_matrix(
@@ -207,6 +214,14 @@ StoredMobility read_mobility(const std::filesystem::path& path) {
   if (const std::string fault = find_fault(m); !fault.empty()) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));
   }
+  const Eigen::VectorXd window =
+      reader.has("/window") ? reader.read_vector("/window") : Eigen::VectorXd::Constant(1, m.window());
+  if (window.size() != 1 || !(window(0) > 0) || !(window(0) <= m.window() + 1e-6 * m.step)) {
+    throw InputError(
+        fmt::format("{}: \"/window\" must be one value, > 0 and at most {} s, the end of \"/time\"",
+                    path.string(), m.window()));
+  }
+  stored.window = window(0);
   if (reader.has("/identity")) stored.identity = reader.read_names("/identity");
   if (reader.has("/parameters")) {
     stored.parameters =

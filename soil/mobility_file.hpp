@@ -8,6 +8,7 @@
 #include "easydyn/results/result_file.hpp"
 #include "soil/layered/layered_ground.hpp"
 #include "soil/mobility.hpp"
+#include "soil/response_rest.hpp"
 #include "soil/site.hpp"
 
 namespace easydyn::soil {
@@ -19,7 +20,9 @@ struct StoredMobility {
   GroundDamping damping = GroundDamping::maxwell_body;
   std::string method;                 ///< how the responses were computed, e.g. "layered half-space"
   std::vector<std::string> identity;  ///< describe_responses(); none in a file of an earlier version
-  std::vector<Parameter> parameters;  ///< of the method: mesh, boundary, time step
+  std::vector<Parameter> parameters;  ///< of the method: mesh, boundary, time step; rest
+  double window = 0;  ///< [s] that all responses hold; the samples reach farther where far footprints need it
+  ResponseRest rest;  ///< of those just computed; a file has its size in the parameters
 };
 
 /// @throws ModelError if sizes disagree or a value is not finite; InputError if the file cannot be written

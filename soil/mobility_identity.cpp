@@ -7,7 +7,6 @@
 #include <set>
 
 #include "easydyn/results/provenance.hpp"
-#include "soil/mobility_file.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -78,6 +77,7 @@ Lines describe_responses(const Site& site, GroundDamping damping, const SolverOp
   Lines lines;
   lines.push_back("method = " + std::string(elements ? element_method : layered_method));
   lines.push_back("version of the program = " + results::library_version());
+  lines.push_back(fmt::format("revision of the responses = {}", response_revision));
   for (const std::string& line : describe_ground(site)) lines.push_back(line);
   lines.push_back("damping model = " + name_of(damping));
   if (!elements) return lines;
@@ -96,6 +96,11 @@ std::string find_difference(const Lines& there, const Lines& here) {
     if (was != is) return fmt::format("{} there, {} here", was, is);
   }
   return {};
+}
+
+std::string find_shortage(const StoredMobility& stored, double window) {
+  if (stored.window >= window - 1e-6 * stored.mobility.step) return {};
+  return fmt::format("responses of {:.6g} s there, {:.6g} s here", stored.window, window);
 }
 
 std::string find_missing(const Mobility& mobility, const Mobility& needed) {

@@ -1,6 +1,7 @@
 #include "soil/mobility_prediction.hpp"
 
 #include "soil/layered/superposition.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/prediction.hpp"
 
 namespace easydyn::soil {
@@ -18,13 +19,13 @@ Vibrations predict_vibrations(const StoredMobility& stored, const SurfaceLoads& 
            : damping == GroundDamping::maxwell_body           ? 2.0
                                                               : 3.0;
   };
-  if (stored.parameters.empty()) {
+  if (stored.method == layered_method) {
     v.parameters.push_back({"solver", "material damping (0 none, 1 stiffness, 2 constant, 3 constant Q)",
                             number(stored.damping), "1", "option"});
   }
   const std::string group = "impulse responses: " + stored.method;
-  v.parameters.push_back({group, "length of the responses",
-                          m.step * static_cast<double>(m.hz.rows() - m.before), "s", "computed"});
+  v.parameters.push_back(
+      {group, "length of the responses", stored.window > 0 ? stored.window : m.window(), "s", "computed"});
   v.parameters.push_back({group, "step of the responses", m.step, "s", "computed"});
   v.parameters.push_back(
       {group, "distances of receivers", static_cast<double>(m.places.size()), "1", "computed"});

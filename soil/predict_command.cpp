@@ -60,7 +60,10 @@ StoredMobility obtain_mobility(const Arguments& arguments, const SurfaceLoads& l
   if (arguments.verify) refuse_to_verify();
   const Site site = read_site(arguments.ground);
   warn_of_unusual_values(arguments.ground, site);
-  return compute_mobility(site, loads.footprints, GroundDamping::maxwell_body, 0, arguments.threads);
+  StoredMobility stored =
+      compute_mobility(site, loads.footprints, GroundDamping::maxwell_body, 0, arguments.threads);
+  warn_of_rest(stored.rest);
+  return stored;
 }
 
 void run(const Arguments& arguments, const std::string& command_line) {

@@ -13,6 +13,7 @@
 #include "easydyn/error.hpp"
 #include "soil/agreement.hpp"
 #include "soil/band_split.hpp"
+#include "soil/physical_memory.hpp"
 #include "soil/rheology.hpp"
 #include "soil/wave_solver_impl.hpp"
 
@@ -59,10 +60,6 @@ bool is_odd(const std::vector<Footprint>& footprints, const SolverOptions& optio
 // Frequency up to which the lattice of the low part resolves, over the crossover. At the upper end of its band a sponge sends
 // back more, from elements too coarse; the low part must stay below that (docs/soil_boundary.md).
 constexpr double low_resolution = 1.6;
-
-double physical_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
 
 /// To three digits: the estimate of the stable step differs in the last ones from machine to machine.
 double round_down(double step) {

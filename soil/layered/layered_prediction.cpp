@@ -39,6 +39,9 @@ StoredMobility compute_mobility(const Site& site, const std::vector<Footprint>& 
   stored.identity = describe_responses(site, damping, nullptr);
   stored.mobility = list_distances(footprints, site.receivers);
   update_mobility(LayeredGround(site, damping), site.highest_frequency, stored.mobility, window, threads);
+  stored.window = stored.mobility.window();
+  stored.rest = find_rest(stored.mobility);
+  stored.parameters.push_back(describe_rest(stored.rest));
   return stored;
 }
 

@@ -147,10 +147,10 @@ class Superposition {
     for (std::size_t j = 0; j < loads.footprints.size(); ++j) {
       const Footprint& f = loads.footprints[j];
       if (std::abs(f.length - mobility.length) > 1e-6 || std::abs(f.width - mobility.width) > 1e-6) {
-        throw ModelError(
-            fmt::format("superposition: footprint {} is {} m x {} m, must be {} m x {} m, that of the "
-                        "responses",
-                        j + 1, f.length, f.width, mobility.length, mobility.width));
+        throw ModelError(fmt::format(
+            "superposition: {} is {} m x {} m, must be {} m x {} m, that of the "
+            "responses (soil run takes any sizes)",
+            name_footprint(loads.footprints, j), f.length, f.width, mobility.length, mobility.width));
       }
       if (f.direction != LoadDirection::down && !mobility.horizontal.contains(f.direction)) {
         throw ModelError(

@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,18 +38,24 @@ Site make_site(double highest_frequency, double points) {
   return site;
 }
 
-// What loads up to the highest frequency see of a difference: |H - H'| / |H'| from 1/4 of it to it.
-double compare(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, double step,
-               double highest_frequency) {
+// What loads in a band of frequencies see of a difference: |H - H'| / |H'|. Both begin before t = 0 alike.
+double compare_band(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, double step, double lowest,
+                    double highest) {
   double difference = 0, size = 0;
   const Index nt = std::min(h.rows(), reference.rows());
-  for (double f = highest_frequency / 4; f <= highest_frequency; f += highest_frequency / 40) {
+  for (double f = lowest; f <= highest; f += highest / 40) {
     Eigen::VectorXcd wave(nt);
     for (Index i = 0; i < nt; ++i) wave(i) = std::polar(1.0, -2 * std::numbers::pi * f * step * double(i));
     difference += (wave.transpose() * (h - reference).topRows(nt)).squaredNorm();
     size += (wave.transpose() * reference.topRows(nt)).squaredNorm();
   }
   return std::sqrt(difference / size);
+}
+
+// The same from 1/4 of the highest frequency to it.
+double compare(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, double step,
+               double highest_frequency) {
+  return compare_band(h, reference, step, highest_frequency / 4, highest_frequency);
 }
 
 const std::vector<Footprint> sleepers = {{0, 0, 1, 2.5}, {1.2, 0, 1, 2.5}, {12, 0, 1, 2.5}};
@@ -59,7 +67,7 @@ TEST(ElementMobility, AgreesWithTheLayeredHalfSpace) {
   const Mobility& m = stored.mobility;
   EXPECT_EQ(stored.method, "finite elements");
   EXPECT_EQ(find_missing(m, list_distances(sleepers, site.receivers)), "");
-  EXPECT_LT(elements.rest(), 0.01);
+  EXPECT_LT(stored.rest.share, 0.01);
   Mobility layered = m;
   update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 40, layered, elements.window());
   ASSERT_EQ(layered.hz.rows(), m.hz.rows());
@@ -67,11 +75,10 @@ TEST(ElementMobility, AgreesWithTheLayeredHalfSpace) {
   EXPECT_LT(compare(m.hx, layered.hx, m.step, 40), 0.03);
   EXPECT_LT(compare(m.hy, layered.hy, m.step, 40), 0.03);
   EXPECT_LT(compare(m.hz, layered.hz, m.step, 40), 0.03);
-  // The loaded footprint, 1 m on elements of 2.7 m that only resolve the waves, is too stiff by 5.5 %, as in a direct run.
+  // The loaded footprint, 1 m on elements of 2.7 m that only resolve the waves, would be too stiff by 5.5 %.
   for (std::size_t s = 0; s < m.shifts.size(); ++s) {
     const auto c = static_cast<Index>(s);
-    EXPECT_LT(compare(m.mean.col(c), layered.mean.col(c), m.step, 40), m.shifts[s][0] == 0 ? 0.08 : 0.03)
-        << m.shifts[s][0];
+    EXPECT_LT(compare(m.mean.col(c), layered.mean.col(c), m.step, 40), 0.03) << m.shifts[s][0];
   }
   EXPECT_EQ(m.before, layered.before);
 }
@@ -84,18 +91,44 @@ TEST(ElementMobility, TakesFootprintsBeyondTheReceiversFromTheLayeredHalfSpace) 
   EXPECT_LT(elements.solver().lattice().interior_x()[1], 6 + site.margin + 3);
   const StoredMobility stored = elements.compute();
   Mobility layered = stored.mobility;
-  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 20, layered, elements.window());
+  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 20, layered, stored.mobility.window());
+  const double side = elements.solver().lattice().x[1];
+  EXPECT_GT(side, 1.2);
   for (std::size_t s = 0; s < layered.shifts.size(); ++s) {
-    const bool is_far = layered.shifts[s][0] > 6;
-    EXPECT_EQ(stored.mobility.mean.col(Index(s)) == layered.mean.col(Index(s)), is_far)
-        << layered.shifts[s][0];
+    const double shift = layered.shifts[s][0];
+    EXPECT_EQ(stored.mobility.mean.col(Index(s)) == layered.mean.col(Index(s)), shift < side || shift > 6)
+        << shift;
   }
   EXPECT_EQ(find_missing(stored.mobility, list_distances(sleepers, site.receivers)), "");
 }
 
+TEST(ElementMobility, GivesFarFootprintsAWindowOfTheirOwn) {
+  // 150 m at 150 m/s take longer than the window of the near receiver; it would fold back into it.
+  Site site = make_site(10, 4);
+  site.layers[0].cs = site.layers[1].cs = 150;
+  site.layers[0].cp = site.layers[1].cp = 300;
+  site.receivers = {{"4 m", {75, 4, 0}}};
+  const std::vector<Footprint> two = {{0, 0, 1, 2.5}, {150, 0, 1, 2.5}};
+  ElementMobility elements(site, two, {.solver = {.degree = 3}, .window = 0.8});
+  EXPECT_LT(elements.window(), 1);
+  const StoredMobility stored = elements.compute();
+  EXPECT_EQ(stored.window, elements.window());
+  EXPECT_GT(stored.mobility.window(), 1.5);
+  Mobility long_window = list_distances(two, site.receivers);
+  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 10, long_window, 6);
+  const auto shift =
+      std::find(stored.mobility.shifts.begin(), stored.mobility.shifts.end(), std::array<double, 2>{150, 0});
+  ASSERT_NE(shift, stored.mobility.shifts.end());
+  ASSERT_EQ(long_window.shifts.back()[0], 150);
+  // What follows the 1.9 s of the window is below 0.1 %.
+  EXPECT_LT(compare(stored.mobility.mean.col(shift - stored.mobility.shifts.begin()),
+                    long_window.mean.rightCols(1), stored.mobility.step, 10),
+            1e-3);
+}
+
 TEST(ElementMobility, IsFreeOfTheLeapfrogsTimeError) {
   // Against the same mesh with a third of the time step. What is left is the error of sponge, dashpots and memory
-  // variables, which the shift of the frequency does not remove. Measured at 30 Hz: 0.57 and 0.06 %.
+  // variables, which the shift of the frequency does not remove. Measured: 0.25 and 0.02 %.
   Site site = make_site(20, 4);
   const std::vector<Footprint> one = {{0, 0, 1, 2.5}};
   const auto compute = [&](double safety, bool corrected) {
@@ -163,6 +196,13 @@ TEST(ElementMobility, AddsTheLatticeOfLowFrequencies) {
   std::printf("crossover: %.4f\n", difference);
   EXPECT_LT(difference, 0.05);
   EXPECT_GT(difference, 0);
+  // Where the edge of the smaller lattice reflects, the larger one is nearer to the half-space.
+  Mobility layered = plain;
+  update_mobility(LayeredGround(site, GroundDamping::maxwell_body), 30, layered, 3);
+  const double plain_low = compare_band(plain.hz, layered.hz, plain.step, 2, 10),
+               crossed_low = compare_band(crossed.hz, layered.hz, plain.step, 2, 10);
+  std::printf("2 to 10 Hz: plain %.4f, crossover %.4f\n", plain_low, crossed_low);
+  EXPECT_LT(crossed_low, plain_low);
 }
 
 TEST(ElementMobility, RefusesBlocksThatDoNotFit) {

@@ -182,7 +182,8 @@ TEST_F(SoilProgram, KeepsImpulseResponsesOfFiniteElementsWhileTheyHold) {
   folder_.write("site.toml", text);
   const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();
   const std::string file = (folder_ / "site.mobility.h5").string();  // beside the site file
-  const std::string command = "mobility " + site + " --loads " + loads + " --method elements";
+  // Half a second after the slowest wave is short at 10 Hz: 2.9 % would be left.
+  const std::string command = "mobility " + site + " --loads " + loads + " --method elements --window 1";
   const Outcome announced = call(command + " --dry-run");
   EXPECT_THAT(announced.out, AllOf(HasSubstr("quarter model"), HasSubstr("memory "), HasSubstr("expected ")));
   EXPECT_FALSE(std::filesystem::exists(file));
@@ -230,6 +231,51 @@ TEST_F(SoilProgram, KeepsImpulseResponsesOfFiniteElementsWhileTheyHold) {
   expect_refused(call(command + " --damping constant-q"), "must be constant, stiffness or none");
   expect_refused(call("predict " + site + " " + loads + " --verify --output " + (folder_ / "out").string()),
                  "the responses are semi-analytical themselves");
+}
+
+TEST_F(SoilProgram, ComputesResponsesAnewThatAreTooShort) {
+  folder_.write("site.toml", tiny_site);
+  const std::string command =
+      "mobility " + (folder_ / "site.toml").string() + " --loads " + (folder_ / "loads.h5").string();
+  const std::string file = (folder_ / "site.mobility.h5").string();
+  const Outcome cut_off = call(command + " --window 0.1");  // before the waves are at 20 m
+  ASSERT_EQ(cut_off.status, 0) << cut_off.err;
+  EXPECT_THAT(cut_off.err, AllOf(HasSubstr("soil: warning: "), HasSubstr(" m from the footprint are left"),
+                                 HasSubstr("--window")));
+  EXPECT_EQ(call(command + " --window 0.1").out, file + ": up to date\n");
+  const Outcome whole = call(command);
+  ASSERT_EQ(whole.status, 0) << whole.err;
+  EXPECT_EQ(whole.err, "");
+  EXPECT_THAT(whole.out, HasSubstr("does not hold any more: responses of 0.2 s there, 1.1875 s here"));
+  EXPECT_EQ(call(command).out, file + ": up to date\n");
+  EXPECT_EQ(call(command + " --window 0.1").out, file + ": up to date\n");
+}
+
+TEST_F(SoilProgram, RefusesOptionsThatWouldDoNothing) {
+  folder_.write("site.toml", tiny_site);
+  const std::string command = "mobility " + (folder_ / "site.toml").string(),
+                    loads = " --loads " + (folder_ / "loads.h5").string();
+  for (const std::string option : {"--degree 3", "--double", "--crossover 5"}) {
+    expect_refused(call(command + loads + " " + option), "is for --method elements, the method is layered");
+  }
+  for (const std::string option : {"--spacing 0.7", "--count 3", "--footprint 1 2"}) {
+    const Outcome outcome = call(command + loads + " " + option);
+    expect_refused(outcome, "the footprints are those of --loads");
+    EXPECT_THAT(outcome.err, HasSubstr(option.substr(0, option.find(' '))));
+  }
+}
+
+TEST_F(SoilProgram, EndsLayeredWorkOnTheFirstSignal) {
+  std::string text = tiny_site;
+  text.replace(text.find("highest_frequency = 10\n"), 23, "highest_frequency = 200\n");  // minutes
+  folder_.write("site.toml", text);
+  const std::string arguments = "mobility " + (folder_ / "site.toml").string() +
+                                " --footprint 1 2.5 --count 200 --window 100 --threads 1";
+  const int status = std::system(("timeout --preserve-status -s TERM 0.5 " + std::string(SOIL_PROGRAM) + " " +
+                                  arguments + " >/dev/null 2>&1")
+                                     .c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 143);  // 128 + SIGTERM
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "site.mobility.h5"));
 }
 
 TEST_F(SoilProgram, TakesPicturesWithoutAWordInTheSiteFile) {

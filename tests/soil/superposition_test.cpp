@@ -283,6 +283,35 @@ TEST(Superposition, MirrorsTheMotionAcrossTheTrackAndAlongIt) {
   EXPECT_GT(motion.vx.col(2).norm(), 0.05 * size / 2);
 }
 
+TEST(LayeredMobility, TellsOfALayerThatRingsOn) {
+  // 5 m of 100 m/s on rock ring at cs / (4 h) = 5 Hz; with 0.5 % of damping e^(-2 pi 5 0.005 t) = 0.8 after 1.4 s.
+  Site site = make_site();
+  site.layers = {make_layer(5, 100, 0.33, 1800, 0.005), make_layer(0, 1500, 0.3, 2400, 0.005)};
+  site.receivers = {{"near", {0, 4, 0}}, {"far", {0, 20, 0}}};
+  const auto compute = [&](double window) {
+    return soil::compute_mobility(site, {{0, 0, 0.3, 2.5}}, GroundDamping::maxwell_body, window, 1);
+  };
+  const StoredMobility cut_off = compute(0);
+  std::printf("rest %.4f at %s\n", cut_off.rest.share, cut_off.rest.where.c_str());
+  EXPECT_GT(cut_off.rest.share, 0.1);
+  EXPECT_EQ(cut_off.rest.where, "a receiver at (0, 20, 0) m from the footprint");
+  EXPECT_EQ(cut_off.parameters.back().value, cut_off.rest.share);
+  const StoredMobility whole = compute(20);
+  std::printf("rest %.5f at %s\n", whole.rest.share, whole.rest.where.c_str());
+  EXPECT_LT(whole.rest.share, ResponseRest::accepted);
+}
+
+TEST(LayeredMobility, RefusesWhatDoesNotFitInMemory) {
+  // 1e6 places, 1e4 s at 40 Hz: 1.6e6 samples of 3e6 displacements, 8 byte for each and 7 for its spectrum: 72 TB.
+  Mobility mobility;
+  mobility.length = mobility.width = 1;
+  mobility.places.assign(1000000, {0, 4, 0});
+  EXPECT_THAT(
+      [&] { update_mobility(LayeredGround(make_site(), GroundDamping::maxwell_body), 40, mobility, 1e4); },
+      ::testing::ThrowsMessage<ModelError>(
+          ::testing::HasSubstr("0 of footprints need 7.2e+04 GB of memory")));
+}
+
 TEST(Superposition, RefusesWhatDoesNotFit) {
   Site site = make_site();
   SurfaceLoads loads = make_loads();
@@ -299,6 +328,12 @@ TEST(Superposition, RefusesWhatDoesNotFit) {
   EXPECT_THROW(superpose(mobility, site, loads), ModelError);
   loads.footprints[2].width = 2;
   EXPECT_THROW(list_distances(loads.footprints, site.receivers), ModelError);
+  // Of several files the one that differs is named, with its own count.
+  for (std::size_t j = 1; j < 7; ++j) loads.footprints[j].source = 1;
+  EXPECT_THAT([&] { list_distances(loads.footprints, site.receivers); },
+              ::testing::ThrowsMessage<ModelError>(::testing::HasSubstr(
+                  "footprint 2 of load file 2 is 0.3 m x 2 m, must be 0.3 m x 2.5 m like footprint 1 of load "
+                  "file 1 (soil run takes any sizes)")));
 
   site = make_site();
   loads = make_loads();
