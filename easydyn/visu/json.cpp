@@ -217,7 +217,7 @@ void Value::append_to(std::string& out) const {
   } else if (const auto* number = std::get_if<double>(&data_)) {
     out += std::isfinite(*number) ? fmt::format("{}", *number) : "null";
   } else if (const auto* string = std::get_if<std::string>(&data_)) {
-    out += quoted(*string);
+    out += json::quoted(*string);
   } else if (const auto* array = std::get_if<Array>(&data_)) {
     out += '[';
     for (const Value& value : *array) {
@@ -229,7 +229,7 @@ void Value::append_to(std::string& out) const {
     out += '{';
     for (const auto& member : *object) {
       if (&member != object->data()) out += ',';
-      out += quoted(member.first) + ':';
+      out += json::quoted(member.first) + ':';
       member.second.append_to(out);
     }
     out += '}';
