@@ -13,17 +13,18 @@ std::string format_bytes(double bytes) {
 
 void require_disk_space(const std::filesystem::path& folder, double bytes, const std::string& what) {
   std::error_code error;
-  std::filesystem::path existing = std::filesystem::absolute(folder);
+  const std::filesystem::path named = folder.empty() ? "." : folder;  // of a file without folder
+  std::filesystem::path existing = std::filesystem::absolute(named);
   while (!std::filesystem::exists(existing, error) && existing.has_relative_path())
     existing = existing.parent_path();
   const std::filesystem::space_info space = std::filesystem::space(existing, error);
   if (error)
     throw InputError(
-        fmt::format("{}: the space on its disk is not known, {}", folder.string(), error.message()));
+        fmt::format("{}: the space on its disk is not known, {}", named.string(), error.message()));
   const auto available = static_cast<double>(space.available);
   if (!(bytes <= available))
     throw InputError(fmt::format("{}: {} need {}, must be at most {}, what is free on the disk",
-                                 folder.string(), what, format_bytes(bytes), format_bytes(available)));
+                                 named.string(), what, format_bytes(bytes), format_bytes(available)));
 }
 
 }  // namespace easydyn::soil

@@ -154,7 +154,11 @@ double estimate_element_window(const Site& site, const Mobility& distances) {
   for (const Layer& layer : site.layers) slowest = std::min(slowest, layer.cs);
   for (const Block& block : site.blocks)
     if (!block.open) slowest = std::min(slowest, block.material.cs);
-  return near.farthest() / (0.8 * slowest) + 0.5;
+  double crossing = 0;  // [s] of a shear wave from the half-space to the surface
+  for (std::size_t i = 0; i + 1 < site.layers.size(); ++i)
+    crossing += site.layers[i].thickness / site.layers[i].cs;
+  const double decay = std::max({0.5, 10 / site.highest_frequency, 8 * 2 * crossing});
+  return near.farthest() / (0.8 * slowest) + decay;
 }
 
 ElementMobility::ElementMobility(const Site& site, const std::vector<Footprint>& footprints,

@@ -3,6 +3,7 @@
 #include <petscsys.h>
 
 #include <chrono>
+#include <string>
 #include <thread>
 
 #include "soil/halo_exchange.hpp"
@@ -69,6 +70,11 @@ class MpiRanks : public LaunchedRanks {
 
 }  // namespace
 }  // namespace easydyn::soil
+
+extern "C" const char* easydyn_ranks_interface() {
+  static const std::string interface = easydyn::soil::describe_ranks_interface(EASYDYN_VERSION);
+  return interface.c_str();
+}
 
 extern "C" easydyn::soil::LaunchedRanks* easydyn_start_ranks() {
   static easydyn::soil::MpiRanks ranks;

@@ -10,12 +10,30 @@
 #include <cstdlib>
 
 #include "easydyn/error.hpp"
+#include "easydyn/results/provenance.hpp"
 
 namespace easydyn::soil {
 namespace {
 
 constexpr const char* module_name = "libsoil_mpi.so";
 constexpr double patience = 2;  // [s] until a rank with an error thinks that it is the only one
+
+/// A function of the module.
+template <class Function>
+Function find_function(void* module, const char* name) {
+  return reinterpret_cast<Function>(dlsym(module, name));
+}
+
+// A module of another version would be called by functions that it does not have.
+void require_same_interface(void* module, void* any_function) {
+  const auto describe = find_function<const char* (*)()>(module, "easydyn_ranks_interface");
+  const std::string there = describe ? describe() : "an earlier version",
+                    here = describe_ranks_interface(results::library_version());
+  if (there == here) return;
+  Dl_info file{};
+  throw InputError(fmt::format("{}: is of {}, must be of {}, that of this program: install both together",
+                               dladdr(any_function, &file) ? file.dli_fname : module_name, there, here));
+}
 
 }  // namespace
 
@@ -33,9 +51,9 @@ ParallelRun::ParallelRun() {
     throw InputError(
         fmt::format("started as one of {} ranks, but this program has no MPI (CMake option EASYDYN_MPI): {}",
                     launched, dlerror()));
-  using Start = LaunchedRanks* (*)();
-  const auto start = reinterpret_cast<Start>(dlsym(module, "easydyn_start_ranks"));
+  const auto start = find_function<LaunchedRanks* (*)()>(module, "easydyn_start_ranks");
   if (!start) throw InputError(fmt::format("{}: {}", module_name, dlerror()));
+  require_same_interface(module, reinterpret_cast<void*>(start));
   ranks_ = start();
   if (ranks_->size() != launched)
     throw InputError(

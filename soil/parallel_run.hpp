@@ -17,6 +17,12 @@ class LaunchedRanks : public Ranks {
   virtual void finish() = 0;  ///< the last call
 };
 
+/// What the program and the module with the ranks must agree on: the version, and how these classes lie in memory.
+/// The number is raised with every change of Ranks, Halo or LaunchedRanks.
+inline std::string describe_ranks_interface(const std::string& version) {
+  return version + ", interface 1";
+}
+
 /// Number of processes that the launcher has started, by the variables of its environment; 1 without launcher.
 ///
 /// Open MPI: OMPI_COMM_WORLD_SIZE; MPICH, Intel MPI: PMI_SIZE; srun: SLURM_STEP_NUM_TASKS. (SLURM_NTASKS is set in the
@@ -27,7 +33,7 @@ int count_launched_ranks();
 /// prints.
 class ParallelRun {
  public:
-  /// @throws InputError if there are several ranks and this program cannot use MPI
+  /// @throws InputError if there are several ranks and this program cannot use MPI, or its module is of another version
   ParallelRun();
   ~ParallelRun();
   ParallelRun(const ParallelRun&) = delete;

@@ -11,6 +11,7 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/layered_mobility.hpp"
+#include "soil/layered/layered_prediction.hpp"
 #include "soil/mobility_identity.hpp"
 #include "soil/mobility_prediction.hpp"
 #include "soil/prediction.hpp"
@@ -81,6 +82,36 @@ TEST(ElementMobility, AgreesWithTheLayeredHalfSpace) {
     EXPECT_LT(compare(m.mean.col(c), layered.mean.col(c), m.step, 40), 0.03) << m.shifts[s][0];
   }
   EXPECT_EQ(m.before, layered.before);
+}
+
+TEST(ElementMobility, ChoosesALongWindowForLowFrequenciesAndSoftLayers) {
+  // 8 m at 0.8 150 m/s, and what is largest of 0.5 s, ten periods, eight times 2 x 2 m / (150 m/s).
+  const auto window = [](const Site& site) {
+    return estimate_element_window(site, list_distances({{0, 0, 0.6, 2.5}}, site.receivers));
+  };
+  Site site = make_site(40, 6);
+  site.receivers = {{"8 m", {0, 8, 0}}};
+  const double way = 8 / (0.8 * 150);
+  EXPECT_NEAR(window(site), way + 0.5, 1e-12);
+  site.highest_frequency = 10;
+  EXPECT_NEAR(window(site), way + 1, 1e-12);
+  site.layers.insert(site.layers.begin() + 1, site.layers[0]);
+  site.layers[1].thickness = 10;
+  EXPECT_NEAR(window(site), way + 8 * 2 * 12.0 / 150, 1e-12);
+
+  // The layered half-space has died out by then on soft ground at low frequencies, and had not after half a second.
+  site = make_site(20, 6);
+  site.layers[0] = {
+      .name = "soft", .thickness = 10, .density = 1900, .cs = 100, .cp = 200, .damping = 0.03, .source = ""};
+  site.layers[1].cs = 300;
+  site.receivers = {{"30 m", {0, 30, 0}}};
+  const auto rest = [&](double length) {
+    return compute_mobility(site, {{0, 0, 1, 2.5}}, GroundDamping::maxwell_body, length, 1).rest.share;
+  };
+  const double left = rest(window(site)), left_before = rest(30 / (0.8 * 100) + 0.5);
+  std::printf("left %.4f, with half a second %.4f\n", left, left_before);
+  EXPECT_LT(left, ResponseRest::accepted);
+  EXPECT_GT(left_before, 5 * ResponseRest::accepted);
 }
 
 TEST(ElementMobility, TakesFootprintsBeyondTheReceiversFromTheLayeredHalfSpace) {

@@ -182,14 +182,20 @@ TEST_F(SoilProgram, KeepsImpulseResponsesOfFiniteElementsWhileTheyHold) {
   folder_.write("site.toml", text);
   const std::string site = (folder_ / "site.toml").string(), loads = (folder_ / "loads.h5").string();
   const std::string file = (folder_ / "site.mobility.h5").string();  // beside the site file
-  // Half a second after the slowest wave is short at 10 Hz: 2.9 % would be left.
-  const std::string command = "mobility " + site + " --loads " + loads + " --method elements --window 1";
+  const std::string command = "mobility " + site + " --loads " + loads + " --method elements";
   const Outcome announced = call(command + " --dry-run");
   EXPECT_THAT(announced.out, AllOf(HasSubstr("quarter model"), HasSubstr("memory "), HasSubstr("expected ")));
   EXPECT_FALSE(std::filesystem::exists(file));
+  // Half a second after the slowest wave is short at 10 Hz; the window that is chosen is long enough.
+  const Outcome cut_off = call(command + " --window 0.625");
+  ASSERT_EQ(cut_off.status, 0) << cut_off.err;
+  EXPECT_THAT(cut_off.err,
+              AllOf(HasSubstr("soil: warning: 2.9 % of the largest response of a receiver at (0, "),
+                    HasSubstr("--window gives a longer one")));
   const Outcome first = call(command);
   ASSERT_EQ(first.status, 0) << first.err;
   EXPECT_EQ(first.err, "");
+  EXPECT_THAT(first.out, HasSubstr("does not hold any more: responses of 0.6"));
   EXPECT_THAT(first.out, AllOf(HasSubstr("waves: done in"), HasSubstr("finite elements")));
   EXPECT_EQ(call(command).out, file + ": up to date\n");
 
@@ -231,6 +237,34 @@ TEST_F(SoilProgram, KeepsImpulseResponsesOfFiniteElementsWhileTheyHold) {
   expect_refused(call(command + " --damping constant-q"), "must be constant, stiffness or none");
   expect_refused(call("predict " + site + " " + loads + " --verify --output " + (folder_ / "out").string()),
                  "the responses are semi-analytical themselves");
+}
+
+TEST_F(SoilProgram, WritesIntoTheCurrentFolderByNameAlone) {
+  folder_.write("site.toml", tiny_site);
+  const std::string here = "cd " + folder_.path().string() + " && " + SOIL_PROGRAM;
+  EXPECT_EQ(std::system(
+                (here + " mobility site.toml --loads loads.h5 --method elements -o a.h5 --dry-run >log 2>&1")
+                    .c_str()),
+            0)
+      << testing::read_whole_file(folder_ / "log");
+  EXPECT_THAT(testing::read_whole_file(folder_ / "log"), HasSubstr("checkpoint "));
+  EXPECT_EQ(std::system((here + " run site.toml loads.h5 --output . --dry-run >log 2>&1").c_str()), 0)
+      << testing::read_whole_file(folder_ / "log");
+}
+
+TEST_F(SoilProgram, RefusesAModuleForRanksOfAnotherVersion) {
+  // As a launcher would start it; the first module has another version, the second one is older than versions.
+  for (const auto& [module, version] :
+       {std::pair{WRONG_MODULE, "1.9.0, interface 1"}, {OLD_MODULE, "an earlier version"}}) {
+    const std::string folder = std::filesystem::path(module).parent_path().string();
+    setenv("OMPI_COMM_WORLD_SIZE", "2", 1);
+    setenv("LD_LIBRARY_PATH", folder.c_str(), 1);
+    const Outcome outcome = run(tiny_site);
+    unsetenv("OMPI_COMM_WORLD_SIZE");
+    unsetenv("LD_LIBRARY_PATH");
+    expect_refused(outcome, std::string("libsoil_mpi.so: is of ") + version + ", must be of ");
+    EXPECT_THAT(outcome.err, HasSubstr(folder));
+  }
 }
 
 TEST_F(SoilProgram, ComputesResponsesAnewThatAreTooShort) {
