@@ -1,6 +1,7 @@
 #include "soil/block_tables.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "soil/gll.hpp"
 
@@ -23,6 +24,24 @@ bool has_block(const Lattice& lattice, int ey, int ez) {
   });
 }
 
+/// Whether a block changes the material of an element of the row.
+bool has_other_material(const Lattice& lattice, int ey, int ez) {
+  if (!has_block(lattice, ey, ez)) return false;
+  for (int ex = 0; ex < lattice.nx(); ++ex)
+    if (find_material(lattice, ex, ey, ez) != lattice.layer[ez]) return true;
+  return false;
+}
+
+/// Whether a row with a block in it touches the line, also one of another rank.
+bool touches_block(const Lattice& lattice, LinePlace line) {
+  const ElementsAt y = elements_at(line.Y, lattice.degree, lattice.ny()),
+                   z = elements_at(line.Z, lattice.degree, lattice.nz());
+  for (int ez = z.first; ez < z.end; ++ez)
+    for (int ey = y.first; ey < y.end; ++ey)
+      if (has_block(lattice, ey, ez)) return true;
+  return false;
+}
+
 }  // namespace
 
 int find_material(const Lattice& lattice, int ex, int ey, int ez) {
@@ -35,10 +54,7 @@ int find_material(const Lattice& lattice, int ex, int ey, int ez) {
 int count_nodes_with_mass(const Lattice& lattice, LinePlace line) {
   const int N = lattice.degree, nX = lattice.nx() * N + 1;
   const ElementsAt y = elements_at(line.Y, N, lattice.ny()), z = elements_at(line.Z, N, lattice.nz());
-  bool near_block = false;
-  for (int ez = z.first; ez < z.end; ++ez)
-    for (int ey = y.first; ey < y.end; ++ey) near_block = near_block || has_block(lattice, ey, ez);
-  if (!near_block) return nX;
+  if (!touches_block(lattice, line)) return nX;
   int count = 0;
   for (int X = 0; X < nX; ++X) {
     const ElementsAt x = elements_at(X, N, lattice.nx());
@@ -76,13 +92,10 @@ void BlockTables<T>::make_rows(const Lattice& lattice, const std::vector<EngineM
   row_index_.assign(static_cast<std::size_t>(part_.size()), -1);
   for (int ez = part_.slabs[0]; ez < part_.slabs[1]; ++ez)
     for (int ey = part_.rows[0]; ey < part_.rows[1]; ++ey) {
-      if (!has_block(lattice, ey, ez)) continue;
+      if (!has_other_material(lattice, ey, ez)) continue;
       const int layer = lattice.layer[ez];
       Row row{lattice.nx(), 0, {}, {}, {}, {}, {}, {}, {}, {}};
-      for (auto* table :
-           {&row.lambda, &row.mu, &row.minus_lambda, &row.minus_mu, &row.lambda_change, &row.mu_change,
-            &row.beta, &row.minus_weight[0], &row.minus_weight[1], &row.minus_weight[2]})
-        table->assign(stride, T(0));
+      for (AlignedVector<T>* table : Row::tables_of(row)) table->assign(stride, T(0));
       for (int ex = 0; ex < lattice.nx(); ++ex) {
         const int material = find_material(lattice, ex, ey, ez);
         if (material == layer) continue;
@@ -100,7 +113,6 @@ void BlockTables<T>::make_rows(const Lattice& lattice, const std::vector<EngineM
         for (std::size_t l = 0; l < to.memory_weights.size(); ++l)
           row.minus_weight[l][ex] = static_cast<T>(-to.memory_weights[l]);
       }
-      if (row.last == 0) continue;
       row_index_[static_cast<std::size_t>(ez - part_.slabs[0]) * rows_ + (ey - part_.rows[0])] =
           static_cast<int>(row_.size());
       row_.push_back(std::move(row));
@@ -134,11 +146,8 @@ void BlockTables<T>::make_mass_lines(const Lattice& lattice, const std::vector<E
   line_index_.assign(static_cast<std::size_t>(lines_) * (end.Z - first_.Z), -1);
   for (int Z = first_.Z; Z < end.Z; ++Z)
     for (int Y = first_.Y; Y < end.Y; ++Y) {
+      if (!touches_block(lattice, {Y, Z})) continue;
       const std::vector<Share> in_y = shares(lattice.y, Y), in_z = shares(lattice.z, Z);
-      bool near_block = false;  // also one of another rank
-      for (const Share& y : in_y)
-        for (const Share& z : in_z) near_block = near_block || has_block(lattice, y.element, z.element);
-      if (!near_block) continue;
       MassLine line;
       line.ratio.assign(static_cast<std::size_t>(N) * stride, T(0));
       line.inverse.assign(static_cast<std::size_t>(N) * stride, T(0));
@@ -157,6 +166,34 @@ void BlockTables<T>::make_mass_lines(const Lattice& lattice, const std::vector<E
           static_cast<int>(mass_line_.size());
       mass_line_.push_back(std::move(line));
     }
+}
+
+template <class T>
+double BlockTables<T>::compute_memory(const Lattice& lattice, int stride, const ElementBlock& part) {
+  if (lattice.blocks.empty()) return 0;
+  const int N = lattice.degree;
+  double rows = 0, lines = 0, all_lines = 0;
+  for (int ez = part.slabs[0]; ez < part.slabs[1]; ++ez)
+    for (int ey = part.rows[0]; ey < part.rows[1]; ++ey) rows += has_other_material(lattice, ey, ez) ? 1 : 0;
+  for (int Z = part.slabs[0] * N; Z <= part.slabs[1] * N; ++Z)
+    for (int Y = part.rows[0] * N; Y <= part.rows[1] * N; ++Y) {
+      lines += touches_block(lattice, {Y, Z}) ? 1 : 0;
+      ++all_lines;
+    }
+  constexpr auto tables =
+      static_cast<double>(std::tuple_size_v<decltype(Row::tables_of(std::declval<Row&>()))>);
+  const double along_x = sizeof(T) * static_cast<double>(stride);
+  return along_x * (3 + tables * rows + 2 * N * lines) +
+         sizeof(int) * (static_cast<double>(part.size()) + all_lines);
+}
+
+template <class T>
+double BlockTables<T>::memory() const {
+  std::size_t values = hx.size() + slope_x.size() + ones.size();
+  for (const Row& row : row_)
+    for (const AlignedVector<T>* table : Row::tables_of(row)) values += table->size();
+  for (const MassLine& line : mass_line_) values += line.ratio.size() + line.inverse.size();
+  return static_cast<double>(values * sizeof(T) + (row_index_.size() + line_index_.size()) * sizeof(int));
 }
 
 template class BlockTables<float>;

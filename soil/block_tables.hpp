@@ -29,6 +29,13 @@ class BlockTables {
     AlignedVector<T> lambda_change, mu_change;
     AlignedVector<T> beta;
     std::array<AlignedVector<T>, 3> minus_weight;  // of the memory variables
+
+    template <class AnyRow>
+    static auto tables_of(AnyRow& row) {
+      return std::array{
+          &row.lambda,    &row.mu,   &row.minus_lambda,    &row.minus_mu,        &row.lambda_change,
+          &row.mu_change, &row.beta, &row.minus_weight[0], &row.minus_weight[1], &row.minus_weight[2]};
+    }
   };
   struct MassLine {                   // tables [N][stride]
     AlignedVector<T> ratio, inverse;  // true mass / that of the layers; inverse 0 where there is none
@@ -37,6 +44,10 @@ class BlockTables {
   BlockTables() = default;
   BlockTables(const Lattice& lattice, const std::vector<EngineMaterial>& materials, const AxisTables<T>& axes,
               int stride, const ElementBlock& part);
+
+  /// [byte] of the tables of such a part, before they are made.
+  static double compute_memory(const Lattice& lattice, int stride, const ElementBlock& part);
+  double memory() const;  ///< [byte]
 
   /// nullptr: no block there.
   const Row* find_row(int ey, int ez) const {

@@ -14,8 +14,10 @@
 
 #include "easydyn/error.hpp"
 #include "soil/frequency_filter.hpp"
+#include "soil/layered/superposition_memory.hpp"
 #include "soil/load_history.hpp"
 #include "soil/parallel_loop.hpp"
+#include "soil/physical_memory.hpp"
 
 namespace easydyn::soil {
 namespace {
@@ -76,10 +78,15 @@ class Finder {
   std::map<std::array<long, N>, Index> index_;
 };
 
+// Samples of loads from `start` on, until they are back at zero after `end`.
+Index count_samples(double start, double end, double step) {
+  return static_cast<Index>(std::ceil((end + unload_time - start) / step)) + 1;
+}
+
 // The loads at the step of the responses, tapered, from `start` on, back to zero after `end`.
 Eigen::MatrixXd sample_loads(const LoadHistory& history, const Eigen::VectorXd& taper, double start,
                              double end, double step, int threads) {
-  const auto samples = static_cast<Index>(std::ceil((end + unload_time - start) / step)) + 1;
+  const Index samples = count_samples(start, end, step);
   Eigen::MatrixXd force(taper.size(), samples);
   for_each_chunk(samples, threads, [&](Index first, Index last) {
     Eigen::VectorXd at;
@@ -158,6 +165,13 @@ class Superposition {
                         f.direction == LoadDirection::x ? "x" : "y", j + 1));
       }
     }
+    first_ = loads.time(0);
+    duration_ =
+        site.duration > 0 ? site.duration : loads.time(loads.time.size() - 1) - first_ + site.decay_time;
+    if (!(duration_ > 0) || !std::isfinite(duration_)) {
+      throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration_));
+    }
+    check_memory(options);
     SurfaceLoads limited = loads;
     const double step =
         (loads.time(loads.time.size() - 1) - loads.time(0)) / static_cast<double>(loads.time.size() - 1);
@@ -168,11 +182,6 @@ class Superposition {
     const LoadHistory history(limited, preload_time);
     motion_.taper = compute_taper(loads.footprints, site.taper_length);
 
-    first_ = history.first_time();
-    duration_ = site.duration > 0 ? site.duration : history.last_time() - first_ + site.decay_time;
-    if (!(duration_ > 0) || !std::isfinite(duration_)) {
-      throw ModelError(fmt::format("site: duration = {} s, must be > 0", duration_));
-    }
     // As in the finite elements: a start below 1/1000 of the largest force does no harm as it is.
     Eigen::VectorXd start;
     history.update_forces(first_ + 1e-12, start);
@@ -183,16 +192,12 @@ class Superposition {
         sample_loads(history, motion_.taper, first_ - mobility.step * static_cast<double>(before_),
                      first_ + duration_, mobility.step, threads_);
     length_ = compute_fast_length(force.rows() + mobility.hz.rows());
-    // The loads hold nothing beyond their roll-off.
-    count_ =
-        std::min(length_ / 2, static_cast<Index>(std::ceil(roll_off * mobility.highest_frequency *
-                                                           mobility.step * static_cast<double>(length_))) +
-                                  1);
+    count_ = count_lines(length_);
     forces_ = transform(force, 0, length_, count_, threads_);
   }
 
   GroundMotion run() {
-    const auto outputs = static_cast<Index>(std::floor(duration_ / mobility_.step * refinement_ + 1e-9)) + 1;
+    const Index outputs = count_outputs();
     motion_.time = Eigen::VectorXd::LinSpaced(
         outputs, first_, first_ + static_cast<double>(outputs - 1) * mobility_.step / refinement_);
     add_receivers();
@@ -201,6 +206,46 @@ class Superposition {
   }
 
  private:
+  Index count_outputs() const {
+    return static_cast<Index>(std::floor(duration_ / mobility_.step * refinement_ + 1e-9)) + 1;
+  }
+  // The loads hold nothing beyond their roll-off.
+  Index count_lines(Index length) const {
+    return std::min(length / 2, static_cast<Index>(std::ceil(roll_off * mobility_.highest_frequency *
+                                                             mobility_.step * static_cast<double>(length))) +
+                                    1);
+  }
+
+  // As if the loads start away from zero: half a second more.
+  void check_memory(const SuperpositionOptions& options) const {
+    SuperpositionSize size;
+    size.footprints = static_cast<Index>(loads_.footprints.size());
+    size.receivers = static_cast<Index>(site_.receivers.size());
+    size.places = static_cast<Index>(mobility_.places.size());
+    size.shifts = static_cast<Index>(mobility_.shifts.size());
+    size.horizontal = static_cast<Index>(mobility_.horizontal.size());
+    size.given = loads_.time.size();
+    size.samples = count_samples(0, duration_ + options.preload_time, mobility_.step);
+    size.circle = compute_fast_length(size.samples + mobility_.hz.rows());
+    size.lines = count_lines(size.circle);
+    size.outputs = count_outputs();
+    size.refinement = refinement_;
+    size.threads = threads_;
+    size.is_even_row = find_even_row(loads_.footprints).has_value();
+    const double kept = 8 * static_cast<double>(mobility_.hz.rows()) *
+                            static_cast<double>((3 * size.places + size.shifts) +
+                                                3 * size.horizontal * (size.places + size.shifts)) +
+                        8 * static_cast<double>(loads_.force.size());
+    require_memory(
+        kept + estimate_memory(size),
+        fmt::format("superposition: loads, responses and spectra of {} footprints and {} receivers over "
+                    "{:.4g} s",
+                    size.footprints, size.receivers, duration_),
+        "take fewer receivers at a time, loads of a shorter passage or duration, or a lower "
+        "highest_frequency",
+        options.memory_limit);
+  }
+
   // Indices of the response from every footprint; throws where one is missing.
   void add_receivers() {
     const Finder<3> finder(mobility_.places);

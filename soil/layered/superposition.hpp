@@ -11,6 +11,7 @@ struct SuperpositionOptions {
   double preload_time = 0.5;    ///< [s] before the first load sample, as SolverOptions::preload_time
   int samples_per_period = 12;  ///< of the highest frequency, in the record; a multiple of 4
   int threads = 0;              ///< 0: one per core
+  double memory_limit = 0;      ///< [byte]; 0: 0.8 of the memory of the machine
 };
 
 /// Ground motion under many footprints from the responses to one:
@@ -22,7 +23,8 @@ struct SuperpositionOptions {
 /// where they start away from zero, held after their end, faded out at both ends of the track by compute_taper(). The
 /// record begins with the loads and ends Site::decay_time after them (or lasts Site::duration).
 /// GroundMotion::energy stays empty.
-/// @throws ModelError if a distance is missing in the mobility, or loads and site do not fit it
+/// @throws ModelError if a distance is missing in the mobility, loads and site do not fit it, or the spectra do not
+///         fit in memory
 GroundMotion superpose(const Mobility& mobility, const Site& site, const SurfaceLoads& loads,
                        const SuperpositionOptions& options = {});
 

@@ -70,6 +70,39 @@ double error_against_reference(const Lattice& lattice, int threads) {
   return difference / largest;
 }
 
+template <class T>
+void expect_memory_as_estimated(const Lattice& lattice, int threads) {
+  const WaveEngine<T> engine(lattice, materials(), rates, free_boundary(), threads);
+  const Partition alone(lattice.ny(), lattice.nz(), lattice.degree, 1);
+  EXPECT_EQ(engine.table_memory(), WaveEngine<T>::compute_table_memory(lattice, alone, 0, threads))
+      << threads;
+}
+
+TEST(MemoryOfTheTables, IsEstimatedToTheByte) {
+  Lattice lattice = small_lattice(4);
+  const auto estimate = [&](int threads) {
+    return WaveEngine<float>::compute_table_memory(lattice, Partition(3, 4, 4, 1), 0, threads);
+  };
+  for (const bool has_blocks : {false, true}) {
+    const double before = estimate(2);
+    // The second one is of the layer's own material: no rows of it, but lines.
+    if (has_blocks) lattice.blocks = {{{1, 3}, {1, 3}, {2, 4}, 2}, {{4, 5}, {0, 1}, {0, 1}, 1}};
+    for (const int threads : {1, 2, 3, 5}) {  // the last: no more than rows
+      expect_memory_as_estimated<float>(lattice, threads);
+      expect_memory_as_estimated<double>(lattice, threads);
+    }
+    if (!has_blocks) continue;
+    // Four rows of ten tables, 9 x 9 and 5 x 5 lines of 2 x 4 tables, three tables along x; then the numbers of 12 rows
+    // and 13 x 17 lines.
+    const double stride = 16;  // of five elements and two more, in packs of at most sixteen
+    const double fewest = 8, tables = 3 + 4 * 10 + 8 * (81 + 25), numbers = 12 + 13 * 17;
+    EXPECT_GE(estimate(2) - before, 4 * (fewest * tables + numbers));
+    EXPECT_LE(estimate(2) - before, 4 * (stride * tables + numbers));
+  }
+  // A second thread adds seams: 2 parts of each of 17 lines of 3 x 4 x stride values.
+  EXPECT_GE(estimate(2) - estimate(1), 4 * 2 * 17 * 3 * 4 * 8.0);
+}
+
 TEST(Block, HasTheOperatorOfTheTextbook) {
   for (const int degree : {3, 4, 5, 6}) {
     Lattice lattice = small_lattice(degree);
