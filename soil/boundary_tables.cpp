@@ -6,22 +6,31 @@
 
 namespace easydyn::soil {
 
+std::vector<double> compute_edge_damping(int degree, const std::vector<double>& lines,
+                                         std::array<double, 2> interior, double strength) {
+  std::vector<double> values = node_positions(GllRule(degree), lines);
+  const double low = values.front(), high = values.back();
+  for (double& value : values) {
+    double s = 0, length = 1;
+    if (value < interior[0]) {
+      length = interior[0] - low;
+      s = (interior[0] - value) / length;
+    } else if (value > interior[1]) {
+      length = high - interior[1];
+      s = (value - interior[1]) / length;
+    }
+    value = strength / length * s * s;
+  }
+  return values;
+}
+
 SpongeFactors compute_sponge(int degree, const std::vector<double>& lines, std::array<double, 2> interior,
                              double strength, double dt) {
-  const std::vector<double> position = node_positions(GllRule(degree), lines);
-  SpongeFactors factors{std::vector<double>(position.size(), 1.0), std::vector<double>(position.size(), 1.0)};
-  for (std::size_t p = 0; p < position.size(); ++p) {
-    double s = 0, length = 1;
-    if (position[p] < interior[0]) {
-      length = interior[0] - position.front();
-      s = (interior[0] - position[p]) / length;
-    } else if (position[p] > interior[1]) {
-      length = position.back() - interior[1];
-      s = (position[p] - interior[1]) / length;
-    }
-    const double a = strength / length * s * s * dt / 2;
-    factors.decay[p] = (1 - a) / (1 + a);
-    factors.gain[p] = 1 / (1 + a);
+  SpongeFactors factors;
+  for (const double damping : compute_edge_damping(degree, lines, interior, strength)) {
+    const double a = damping * dt / 2;
+    factors.decay.push_back((1 - a) / (1 + a));
+    factors.gain.push_back(1 / (1 + a));
   }
   return factors;
 }

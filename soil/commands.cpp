@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <string>
 #include <system_error>
 
 #include "easydyn/error.hpp"
@@ -45,6 +46,17 @@ void add_element_options(CLI::App& command, SolverOptions& options) {
       ->check(CLI::Range(3, 6).description(""))
       ->capture_default_str();
   command.add_flag("--double", options.double_precision, "Fields in double precision (slower, for checks)");
+  command
+      .add_option_function<std::string>(
+          "--boundary",
+          [&options](const std::string& name) {
+            options.boundary = name == "pml" ? AbsorbingBoundary::matched_layer : AbsorbingBoundary::sponge;
+          },
+          "What absorbs waves at the edge of the model: sponge, or pml, a perfectly matched layer, which "
+          "sends back far less below 10 Hz; pml not with --crossover and not on every site")
+      ->check(CLI::IsMember({"sponge", "pml"}).description(""))
+      ->default_str("sponge")
+      ->type_name("EDGE");
   command
       .add_option("--crossover", options.crossover_frequency,
                   "Frequency [Hz] below which the motion is computed on a larger, coarser lattice, for less "

@@ -27,7 +27,7 @@ void make_folder(const std::filesystem::path& folder);
 /// @returns whether there was one  @throws InputError if that is not possible
 bool set_aside(const std::filesystem::path& result);
 
-/// Options that all runs of the finite elements have: threads, degree, precision, crossover.
+/// Options that all runs of the finite elements have: threads, degree, precision, boundary, crossover.
 void add_element_options(CLI::App& command, SolverOptions& options);
 /// Of the option --damping: constant, stiffness or none. @throws InputError for another name
 DampingModel find_damping_model(const std::string& name);

@@ -90,6 +90,7 @@ Site make_model(const Site& site, const Mobility& distances, double duration) {
 SolverOptions make_options(SolverOptions options, const Mobility& distances) {
   options.half_model = options.quarter_model = true;
   options.output_step = 0;
+  options.corrects_time_error = false;  // in the synthesis
   options.preload_time = 0;
   options.observed.clear();
   for (const auto& [x, y] : distances.shifts)

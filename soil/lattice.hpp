@@ -44,6 +44,10 @@ struct Lattice {
   int ny() const { return static_cast<int>(y.size()) - 1; }
   int nz() const { return static_cast<int>(z.size()) - 1; }
   long elements() const { return static_cast<long>(nx()) * ny() * nz(); }
+  long interior_elements() const {  ///< undamped
+    return static_cast<long>(nx() - sponge_x[0] - sponge_x[1]) * (ny() - sponge_y[0] - sponge_y[1]) *
+           (nz() - sponge_z[0] - sponge_z[1]);
+  }
   long nodes() const {
     return (static_cast<long>(nx()) * degree + 1) * (static_cast<long>(ny()) * degree + 1) *
            (static_cast<long>(nz()) * degree + 1);

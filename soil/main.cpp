@@ -86,6 +86,8 @@ void add_run_command(CLI::App& app, RunArguments& run) {
       ->type_name("DIR");
   command.add_flag("-n,--dry-run", run.dry_run, "Print mesh, memory, steps and expected time, and stop");
   add_element_options(command, run.options);
+  command.add_flag("--correct-time", run.options.corrects_time_error,
+                   "Take the error of the time steps away, from loads and records (not from snapshots)");
   command
       .add_option("--damping", run.damping,
                   "constant: the ratio of the site file at all frequencies; stiffness: in proportion to "

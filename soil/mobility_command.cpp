@@ -190,7 +190,8 @@ void refuse_idle_options(const Arguments& arguments, const CLI::App& command) {
       if (command.count(name) > 0) throw InputError(fmt::format("{}: {}", name, reason));
   };
   if (!arguments.has_elements())
-    refuse({"--degree", "--double", "--crossover"}, "is for --method elements, the method is layered");
+    refuse({"--degree", "--double", "--boundary", "--crossover"},
+           "is for --method elements, the method is layered");
   if (!arguments.loads.empty())
     refuse({"--footprint", "--spacing", "--count"}, "the footprints are those of --loads, give one of both");
 }

@@ -86,6 +86,7 @@ Lines describe_responses(const Site& site, GroundDamping damping, const SolverOp
   lines.push_back(fmt::format("degree of the elements = {}", elements->degree));
   lines.push_back(fmt::format("precision = {}", elements->double_precision ? "double" : "single"));
   lines.push_back(fmt::format("crossover = {:.10g} Hz", elements->crossover_frequency));
+  if (elements->boundary == AbsorbingBoundary::matched_layer) lines.push_back("boundary = pml");
   return lines;
 }
 

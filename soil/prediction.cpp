@@ -81,6 +81,8 @@ void add_options(std::vector<Parameter>& rows, const Site& site, const SolverOpt
       standard.double_precision ? 64 : 32);
   add("solver", "crossover to the lattice of low frequencies (0: none)", "Hz", options.crossover_frequency,
       standard.crossover_frequency);
+  add("solver", "time error of the leapfrog taken away (0 no, 1 yes)", "1", options.corrects_time_error,
+      standard.corrects_time_error);
   add("solver", "half model, y >= 0 (0 no, 1 yes)", "1", options.half_model, standard.half_model);
   add("solver", "quarter model, x >= 0 and y >= 0 (0 no, 1 yes)", "1", options.quarter_model,
       standard.quarter_model);
@@ -224,6 +226,9 @@ void print_run_summary(std::FILE* out, const Site& site, const SurfaceLoads& loa
              "          {:.1f} m x {:.1f} m x {:.1f} m, of which {:.1f} m x {:.1f} m x {:.1f} m undamped\n",
              size(lattice.x), size(lattice.y), size(lattice.z), inside(lattice.interior_x()),
              inside(lattice.interior_y()), inside(lattice.interior_z()));
+  if (summary.layer_elements > 0)
+    fmt::print(out, "          {} elements of perfectly matched layer, with {} of states\n",
+               summary.layer_elements, format_bytes(summary.layer_memory));
   if (const Lattice* low = solver.low_lattice()) {
     fmt::print(
         out,

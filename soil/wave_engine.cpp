@@ -21,6 +21,19 @@ int padded_lanes(int nx, int lanes) {
   return (nx + 2 + lanes - 1) / lanes * lanes;
 }
 
+/// No thread without a row of elements.
+int count_team(int threads, const ElementBlock& part) {
+  return std::clamp(threads, 1, part.rows[1] - part.rows[0]);
+}
+
+/// Parts of lines that no other rank gets.
+std::size_t count_kept_parts(const RegionPlan& plan) {
+  std::size_t kept = 0;
+  for (const SeamLine& line : plan.seam_lines())
+    for (int part = 0; part < line.parts; ++part) kept += line.exchanged[part] < 0 ? 1 : 0;
+  return kept;
+}
+
 }  // namespace
 
 template <class T>
@@ -35,7 +48,7 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
       rank_(ranks ? ranks->rank() : 0),
       partition_(lattice.ny(), lattice.nz(), lattice.degree, ranks ? ranks->size() : 1),
       part_(partition_.block(rank_)),
-      team_(std::clamp(threads, 1, part_.rows[1] - part_.rows[0])),
+      team_(count_team(threads, part_)),
       plan_(partition_, lattice.degree, lattice.ny(), lattice.nz(), rank_, team_.size()),
       tile_function_(find_tile_function<T>(lattice.degree)),
       element_function_(find_element_function<T>(lattice.degree)),
@@ -57,11 +70,15 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
     if (material.beta > 0) step_field_ = Field::viscous;
   if (!rates_.empty()) step_field_ = Field::memory;
 
+  if (boundary_.absorber == AbsorbingBoundary::matched_layer)
+    layer_ = std::make_unique<MatchedLayer<T>>(lattice, boundary, axes_, stride_, part_);
+
   scratch_.resize(team_.size());
   const int n = N_ + 1;
   for (Scratch& s : scratch_) {
     s.w.assign(2 * guard + n * n * line_size(), T(0));
     s.f.assign(guard + n * n * line_size(), T(0));
+    if (layer_) s.row.assign(guard + n * n * line_size(), T(0));
     const int lines = plan_.most_rows() * N_ + 1;
     for (auto& plane : s.plane) plane.assign(guard + lines * line_size(), T(0));
   }
@@ -80,10 +97,7 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
 template <class T>
 void WaveEngine<T>::make_seams() {
   const std::size_t size = line_size();
-  std::size_t kept = 0;
-  for (const SeamLine& line : plan_.seam_lines())
-    for (int part = 0; part < line.parts; ++part) kept += line.exchanged[part] < 0 ? 1 : 0;
-  seam_.assign(kept * size, T(0));
+  seam_.assign(count_kept_parts(plan_) * size, T(0));
   sent_.assign(plan_.sent_lines() * size, T(0));
   received_.assign(plan_.received_lines() * size, T(0));
   slot_line_.assign(plan_.slots(), nullptr);
@@ -113,6 +127,35 @@ double WaveEngine<T>::compute_memory(const Lattice& lattice, int memory_variable
   const double lines = (double(part.rows[1] - part.rows[0]) * lattice.degree + 1) *
                        (double(part.slabs[1] - part.slabs[0]) * lattice.degree + 1);
   return (2.0 + memory_variables) * sizeof(T) * 3 * lattice.degree * lanes * lines;
+}
+
+template <class T>
+double WaveEngine<T>::compute_table_memory(const Lattice& lattice, const Partition& partition, int rank,
+                                           int threads) {
+  const ElementBlock part = partition.block(rank);
+  const int N = lattice.degree, stride = padded_lanes(lattice.nx(), Pack<T>::lanes);
+  const int team = count_team(threads, part);
+  const RegionPlan plan(partition, N, lattice.ny(), lattice.nz(), rank, team);
+  const double line = 3.0 * N * stride, corners = (N + 1.0) * (N + 1.0);
+  const double scratch = 5.0 * guard + 2 * (corners + plan.most_rows() * N + 1) * line;
+  const double seams =
+      static_cast<double>(count_kept_parts(plan)) + plan.sent_lines() + plan.received_lines();
+  const bool has_surface = part.slabs[1] == lattice.nz();
+  const double loads = has_surface ? guard + ((part.rows[1] - part.rows[0]) * N + 1.0) * line : 0;
+  return BlockTables<T>::compute_memory(lattice, stride, part) +
+         sizeof(T) * (team * scratch + seams * line + loads);
+}
+
+template <class T>
+double WaveEngine<T>::table_memory() const {
+  std::size_t values = seam_.size() + sent_.size() + received_.size() + load_.size();
+  for (const Scratch& s : scratch_) values += s.w.size() + s.f.size() + s.plane[0].size() + s.plane[1].size();
+  return blocks_.memory() + static_cast<double>(values * sizeof(T));
+}
+
+template <class T>
+double WaveEngine<T>::compute_layer_memory(const Lattice& lattice, const ElementBlock& part) {
+  return MatchedLayer<T>::compute_memory(lattice, padded_lanes(lattice.nx(), Pack<T>::lanes), part);
 }
 
 template <class T>
@@ -173,7 +216,7 @@ void WaveEngine<T>::set_time_step(double dt) {
   dt_ = dt;
   keep_.clear();
   for (const double rate : rates_) keep_.push_back(static_cast<T>(std::exp(-rate * dt)));
-  const double strength = boundary_.sponge_strength * boundary_.sponge_speed;
+  const double strength = layer_ ? 0 : boundary_.sponge_strength * boundary_.sponge_speed;
   const SpongeFactors along_x = compute_sponge(N_, lattice_.x, lattice_.interior_x(), strength, dt);
   decay_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
   gain_x_.assign(static_cast<std::size_t>(N_) * stride_, T(1));
@@ -183,6 +226,7 @@ void WaveEngine<T>::set_time_step(double dt) {
   }
   sponge_y_ = compute_sponge(N_, lattice_.y, lattice_.interior_y(), strength, dt);
   sponge_z_ = compute_sponge(N_, lattice_.z, lattice_.interior_z(), strength, dt);
+  if (layer_) layer_->set_time_step(dt);
 }
 
 template <class T>
@@ -222,11 +266,44 @@ void WaveEngine<T>::form_line(Field field, int layer, int Y, int Z, T* out) cons
   }
 }
 
+/// Force of one row of elements. A row with elements of the matched layer is summed up in lines of its own before it goes to
+/// those that earlier rows have begun: so the sum has the same bits whatever the regions.
+template <class T>
+void WaveEngine<T>::apply_row(Tile<T>& tile, Field field, MatchedLayer<T>* layer, int ey, int ez,
+                              Scratch& scratch) const {
+  if (!layer) {
+    tile_function_(tile);
+    add_blocks(tile, field, ey, ez);
+    return;
+  }
+  const int lines = (N_ + 1) * (N_ + 1);
+  const std::size_t size = line_size();
+  T* begun[Tile<T>::max_n * Tile<T>::max_n] = {};
+  for (int a = 0; a < lines; ++a)
+    if (tile.add[a]) {
+      begun[a] = tile.f[a];
+      tile.f[a] = scratch.row.data() + a * size;
+      tile.add[a] = false;
+    }
+  if (layer->fills(ey, ez))
+    for (int a = 0; a < lines; ++a) std::fill_n(tile.f[a], size, T(0));
+  else
+    tile_function_(tile);
+  add_blocks(tile, field, ey, ez);
+  layer->add_forces(tile, ey, ez);
+  for (int a = 0; a < lines; ++a)
+    if (begun[a]) {
+      for (std::size_t p = 0; p < size; ++p) begun[a][p] += tile.f[a][p];
+      tile.f[a] = begun[a];
+    }
+}
+
 /// Runs through the rows of a region, slab by slab from the bottom; `finish(sums, Y, Z, f)` gets each line of
 /// nodes when its force is complete and may overwrite the line's field. Lines of seams wait for finish_seams().
 template <class T>
 template <class Finish>
-void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const Finish& finish) {
+void WaveEngine<T>::sweep(int thread, const Region& region, Field field, MatchedLayer<T>* layer,
+                          const Finish& finish) {
   const FlushSubnormals flush;
   const GllRule rule(N_);
   const int n = N_ + 1, rows = lattice_.ny();
@@ -248,33 +325,41 @@ void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const F
     const Slab& slab = slabs_[ez];
     const EngineMaterial& material = materials_[slab.layer];
     const bool top = ez + 1 == s1;
+    const bool below_same = slab.below_same && !(layer && layer->fills_slabs(ez - 1)),
+               above_same = slab.above_same && !(layer && layer->fills_slabs(ez + 1));
     tile.lambda = static_cast<T>(material.lambda);
     tile.mu = static_cast<T>(material.mu);
     tile.hz = static_cast<T>(slab.hz);
-    tile.k_end = slab.above_same ? N_ : n;
+    tile.k_end = above_same ? N_ : n;
     for (int k = 0; k < n; ++k) {
       const double own = rule.weights(k) * slab.hz / 2;
       tile.mz_element[k] = static_cast<T>(own);
       tile.mz[k] = static_cast<T>(k >= tile.k_end ? 0.0 : own);
     }
-    if (slab.below_same) tile.mz[0] = static_cast<T>(rule.weights(0) * (slab.hz + slabs_[ez - 1].hz) / 2);
+    if (below_same) tile.mz[0] = static_cast<T>(rule.weights(0) * (slab.hz + slabs_[ez - 1].hz) / 2);
 
     T* const plane_low = scratch.plane[ez % 2].data();
     T* const plane_high = scratch.plane[(ez + 1) % 2].data();
     for (int ey = r0; ey < r1; ++ey) {
       const bool last_row = ey + 1 == rows;
+      // Where the plain elements end.
+      const bool low_end =
+                     (ey == 0 && !lattice_.half_model) || (layer && ey > 0 && layer->fills_rows(ey - 1)),
+                 high_end = last_row || (layer && layer->fills_rows(ey + 1));
       const double hy = lattice_.y[ey + 1] - lattice_.y[ey];
       tile.hy = static_cast<T>(hy);
-      tile.j_end = last_row ? n : N_;
+      tile.j_end = high_end ? n : N_;
       for (int j = 0; j < n; ++j) {
         tile.my_element[j] = static_cast<T>(rule.weights(j) * hy / 2);
         tile.my[j] = static_cast<T>(j < tile.j_end ? axes_.my[ey * N_ + j] : 0.0);
         tile.gradient_end[j] = T(0);
       }
+      if (low_end) tile.my[0] = tile.my_element[0];
+      if (high_end) tile.my[N_] = tile.my_element[N_];
       // At the plane of symmetry, even or odd, what the terms of the face act on is zero or held.
-      if (ey == 0 && !lattice_.half_model) tile.gradient_end[0] = T(-0.5);
-      if (last_row) tile.gradient_end[N_] = T(0.5);
-      tile.y_end = (ey == 0 && !lattice_.half_model) || last_row;
+      if (low_end) tile.gradient_end[0] = T(-0.5);
+      if (high_end) tile.gradient_end[N_] = T(0.5);
+      tile.y_end = low_end || high_end;
 
       for (int k = 0; k < n; ++k)
         for (int j = 0; j < n; ++j) {
@@ -317,8 +402,7 @@ void WaveEngine<T>::sweep(int thread, const Region& region, Field field, const F
               for (const auto& zeta : zeta_) fetch(zeta, next_y + j, next_z + k);
           }
       }
-      tile_function_(tile);
-      add_blocks(tile, field, ey, ez);
+      apply_row(tile, field, layer, ey, ez, scratch);
 
       const int j0 = ey == r0 && region.low_y ? 1 : 0, j1 = last_row ? n : N_;
       const int k0 = ez == s0 && region.low_z ? 1 : 0, k1 = top && !region.high_z ? n : N_;
@@ -350,10 +434,10 @@ void WaveEngine<T>::finish_seams(int thread, const Finish& finish) {
 
 template <class T>
 template <class Finish>
-void WaveEngine<T>::run_sweep(Field field, const Finish& finish) {
+void WaveEngine<T>::run_sweep(Field field, MatchedLayer<T>* layer, const Finish& finish) {
   const auto run = [&](const RegionPlan::Regions& regions) {
     team_.run([&](int t) {
-      for (const Region& region : regions[t]) sweep(t, region, field, finish);
+      for (const Region& region : regions[t]) sweep(t, region, field, layer, finish);
     });
   };
   if (halo_) {
@@ -396,6 +480,8 @@ void WaveEngine<T>::advance_line(Sums& sums, int Y, int Z, T* f) {
   add_springs(Y, Z, f);
   const std::size_t offset = line_offset(Y, Z), row_size = static_cast<std::size_t>(N_) * stride_;
   const double line_mass = axes_.my[Y] * axes_.mz_density[Z];
+  if (layer_) layer_->add_inertia(Y, Z, line_mass, u_.data() + offset, v_.data() + offset, f);
+  const T* const counted_mass = (layer_ ? layer_->plain_mass() : axes_.mx_table).data();
   const auto* const masses = blocks_.find_mass_line({Y, Z});
   const bool loaded = Z == nZ_ - 1 && loaded_row_[Y - first_.Y];
   const T dt = static_cast<T>(dt_), half_dt = static_cast<T>(0.5 * dt_);
@@ -464,7 +550,7 @@ void WaveEngine<T>::advance_line(Sums& sums, int Y, int Z, T* f) {
           // (1 + E) / (2 S): the sponge's share in the mass of the kinetic energy.
           const V decay_p = load_pack(decay_x_.data() + p) * static_cast<T>(decay);
           const V gain_p = load_pack(gain_x_.data() + p) * static_cast<T>(2 * gain);
-          const V mx = load_pack(axes_.mx_table.data() + p);
+          const V mx = load_pack(counted_mass + p);
           V kinetic_p = mx * (T(1) + decay_p) / gain_p * v_new * v_new;
           if (masses) kinetic_p *= load_pack(masses->ratio.data() + p);
           kinetic += kinetic_p;
@@ -486,15 +572,17 @@ void WaveEngine<T>::advance_line(Sums& sums, int Y, int Z, T* f) {
       default:
         advance.template operator()<3>();
     }
-    if constexpr (account)
+    if (account && !layer_)
       for (const int end : {0, last}) {
         const double missing = static_cast<double>(end_force[end == 0 ? 0 : 1] - force[end]);
         sums.energy += 0.5 * axes_.mx[end == 0 ? 0 : nX_ - 1] * missing * static_cast<double>(u[end]);
       }
   }
   if constexpr (account) {
-    sums.kinetic += 0.5 * line_mass * sum_of<T>(kinetic);
-    sums.energy += 0.5 * line_mass * sum_of<T>(kinetic) + 0.5 * sum_of<T>(strain);
+    if (!layer_ || !layer_->holds_line(Y, Z)) {
+      sums.kinetic += 0.5 * line_mass * sum_of<T>(kinetic);
+      sums.energy += 0.5 * line_mass * sum_of<T>(kinetic) + (layer_ ? 0 : 0.5 * sum_of<T>(strain));
+    }
     sums.work += 0.5 * dt_ * sum_of<T>(work);
   }
 }
@@ -515,11 +603,13 @@ void WaveEngine<T>::advance(const std::vector<SurfaceNodeForce>& forces, bool ac
     loaded_row_[row] = 1;
   }
   if (!account) {
-    run_sweep(step_field_, [this](Sums& s, int Y, int Z, T* f) { advance_line<false>(s, Y, Z, f); });
+    run_sweep(step_field_, layer_.get(),
+              [this](Sums& s, int Y, int Z, T* f) { advance_line<false>(s, Y, Z, f); });
     return;
   }
   for (Scratch& scratch : scratch_) scratch.sums = {};
-  run_sweep(step_field_, [this](Sums& s, int Y, int Z, T* f) { advance_line<true>(s, Y, Z, f); });
+  run_sweep(step_field_, layer_.get(),
+            [this](Sums& s, int Y, int Z, T* f) { advance_line<true>(s, Y, Z, f); });
   energy_ = kinetic_energy_ = step_work_ = 0;
   for (const Scratch& scratch : scratch_) {
     energy_ += scratch.sums.energy;
@@ -531,7 +621,7 @@ void WaveEngine<T>::advance(const std::vector<SurfaceNodeForce>& forces, bool ac
 template <class T>
 std::vector<double> WaveEngine<T>::compute_internal_force() {
   std::vector<double> result(static_cast<std::size_t>(3) * nX_ * nY_ * nZ_);
-  run_sweep(Field::plain, [&](Sums&, int Y, int Z, T* f) {
+  run_sweep(Field::plain, nullptr, [&](Sums&, int Y, int Z, T* f) {
     add_springs(Y, Z, f);
     for (int c = 0; c < 3; ++c)
       for (int X = 0; X < nX_; ++X)
@@ -568,7 +658,7 @@ double WaveEngine<T>::compute_largest_eigenvalue(bool weighted, int iterations) 
   double eigenvalue = 0, scale = 1;
   for (int iteration = 0; iteration < iterations; ++iteration) {
     for (Scratch& scratch : scratch_) scratch.sums = {};
-    run_sweep(weighted ? Field::weighted : Field::plain, [&](Sums& sums, int Y, int Z, T* f) {
+    run_sweep(weighted ? Field::weighted : Field::plain, nullptr, [&](Sums& sums, int Y, int Z, T* f) {
       if (!weighted) add_springs(Y, Z, f);
       T* u = u_.data() + line_offset(Y, Z);
       const double line_mass = axes_.my[Y] * axes_.mz_density[Z];
@@ -618,6 +708,7 @@ void WaveEngine<T>::set_to_rest() {
   std::fill(u_.begin(), u_.end(), T(0));
   std::fill(v_.begin(), v_.end(), T(0));
   for (auto& zeta : zeta_) std::fill(zeta.begin(), zeta.end(), T(0));
+  if (layer_) layer_->set_to_rest();
 }
 
 template class WaveEngine<float>;

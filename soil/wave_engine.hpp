@@ -10,6 +10,7 @@
 #include "soil/element_operator.hpp"
 #include "soil/engine_material.hpp"
 #include "soil/lattice.hpp"
+#include "soil/matched_layer.hpp"
 #include "soil/partition.hpp"
 #include "soil/ranks.hpp"
 #include "soil/region_plan.hpp"
@@ -48,6 +49,10 @@ struct SurfaceNodeForce {
 /// difference, element by element (element_operator.hpp), and their lines the ratio of the true mass to the
 /// layer's. Nodes inside open blocks have no mass and stay at rest. Sponge, dashpots and springs are the layer's
 /// where a block reaches the edge of the model; they take energy away or conserve it whatever the block is.
+///
+/// A matched layer instead of the sponge (matched_layer.hpp): rows that it fills are computed by it alone, the ends along x of
+/// the others get the difference from plain elements. No block may reach into it. Estimates of the stable step and
+/// compute_internal_force() leave it out: its elements are plain ones there.
 template <class T>
 class WaveEngine {
  public:
@@ -58,6 +63,12 @@ class WaveEngine {
   static double compute_memory(const Lattice& lattice, int memory_variables);  ///< [byte] of the fields
   static double compute_memory(const Lattice& lattice, int memory_variables,
                                const ElementBlock& part);  ///< [byte] of the fields of a rank
+  /// [byte] of what a rank holds beside them: blocks, seams, what threads compute in, surface forces.
+  static double compute_table_memory(const Lattice& lattice, const Partition& partition, int rank,
+                                     int threads);
+  double table_memory() const;  ///< [byte] the same, counted
+  static double compute_layer_memory(const Lattice& lattice,
+                                     const ElementBlock& part);  ///< [byte] of the states of a matched layer
   const Partition& partition() const { return partition_; }
   const ElementBlock& part() const { return part_; }  ///< of this rank
   /// Whether this rank holds the nodes of a line; only then its functions may be asked about them.
@@ -81,7 +92,7 @@ class WaveEngine {
   /// One step under the given surface forces; energies are summed if `account`.
   void advance(const std::vector<SurfaceNodeForce>& forces, bool account);
   /// Kinetic + strain energy half a step after the last step with `account` [J], of the lines that this rank owns; NaN
-  /// or inf if unstable.
+  /// or inf if unstable. With a matched layer only the kinetic energy outside it: the rest is not known.
   double energy() const { return energy_; }
   /// The kinetic part of it. An unstable step keeps the sum, with a strain energy below zero, but not its parts.
   double kinetic_energy() const { return kinetic_energy_; }
@@ -101,6 +112,7 @@ class WaveEngine {
     visit(u_);
     visit(v_);
     for (AlignedVector<T>& zeta : zeta_) visit(zeta);
+    if (layer_) layer_->visit_state(use);
   }
   /// f = K u with the present displacement, springs included, ordered [component][Z][Y][X]; zero on other ranks' lines.
   std::vector<double> compute_internal_force();
@@ -122,6 +134,7 @@ class WaveEngine {
   };
   struct Scratch {  // of one thread
     AlignedVector<T> w, f, plane[2];
+    AlignedVector<T> row;       // lines of one row that has elements of the matched layer
     Sums sums, sums_of_others;  // of the lines that this rank owns, that another one does
   };
 
@@ -146,11 +159,13 @@ class WaveEngine {
     return lattice_.quarter_model && (component == 0) != boundary_.odd_x;
   }
   template <class Finish>
-  void sweep(int thread, const Region& region, Field field, const Finish& finish);
+  void sweep(int thread, const Region& region, Field field, MatchedLayer<T>* layer, const Finish& finish);
+  void apply_row(Tile<T>& tile, Field field, MatchedLayer<T>* layer, int ey, int ez, Scratch& scratch) const;
   template <class Finish>
   void finish_seams(int thread, const Finish& finish);
+  /// @param layer  nullptr: all elements are plain
   template <class Finish>
-  void run_sweep(Field field, const Finish& finish);
+  void run_sweep(Field field, MatchedLayer<T>* layer, const Finish& finish);
   void form_line(Field field, int layer, int Y, int Z, T* out) const;
   void add_springs(int Y, int Z, T* f) const;
   template <bool account>
@@ -178,7 +193,8 @@ class WaveEngine {
   AxisTables<T> axes_;
   BoundaryTables edge_;
   BlockTables<T> blocks_;
-  AlignedVector<T> decay_x_, gain_x_;  // sponge factors along x [N][stride]
+  std::unique_ptr<MatchedLayer<T>> layer_;  // nullptr: a sponge
+  AlignedVector<T> decay_x_, gain_x_;       // sponge factors along x [N][stride]
   SpongeFactors sponge_y_, sponge_z_;
 
   // Parts of the forces on the lines of the seams; where the line of each slot lies.

@@ -9,6 +9,7 @@
 #include "easydyn/error.hpp"
 #include "soil/agreement.hpp"
 #include "soil/checkpoint.hpp"
+#include "soil/time_error.hpp"
 #include "soil/wave_solver_impl.hpp"
 
 namespace easydyn::soil {
@@ -253,12 +254,22 @@ GroundMotion WaveSolver::Impl::run(WaveEngine<T>& engine, const RunControl& cont
     }
   }
   settle_work(position);
+  // A state of the layer has no energy that is known.
+  if (options.boundary == AbsorbingBoundary::matched_layer) motion.energy.resize(0);
   if (is_low_part && !control.checkpoint.empty()) save(control, engine, motion, position);
   if (ranks) {
     for (Eigen::VectorXd* record : {&motion.time, &motion.energy})
       ranks->sum(record->data(), static_cast<std::size_t>(record->size()));
     for (Eigen::MatrixXd* record : {&motion.vx, &motion.vy, &motion.vz, &motion.footprint_displacement})
       ranks->sum(record->data(), static_cast<std::size_t>(record->size()));
+  }
+  if (options.corrects_time_error) {
+    const auto correct = [&](Eigen::MatrixXd& records, LeapfrogRecord kind) {
+      records = remove_time_error(records, start - history.first_time(), output_step, dt,
+                                  site.highest_frequency, kind);
+    };
+    for (Eigen::MatrixXd* v : {&motion.vx, &motion.vy, &motion.vz}) correct(*v, LeapfrogRecord::velocity);
+    correct(motion.footprint_displacement, LeapfrogRecord::displacement);
   }
   return motion;
 }

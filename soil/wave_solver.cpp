@@ -13,8 +13,10 @@
 #include "easydyn/error.hpp"
 #include "soil/agreement.hpp"
 #include "soil/band_split.hpp"
+#include "soil/matched_layer_limits.hpp"
 #include "soil/physical_memory.hpp"
 #include "soil/rheology.hpp"
+#include "soil/time_error.hpp"
 #include "soil/wave_solver_impl.hpp"
 
 namespace easydyn::soil {
@@ -37,6 +39,17 @@ void check_options(const SolverOptions& options) {
           fmt::format("sponge_strength = {}, must be >= 0", options.sponge_strength));
   require(options.crossover_frequency >= 0 && std::isfinite(options.crossover_frequency),
           fmt::format("crossover_frequency = {} Hz, must be >= 0 (0: none)", options.crossover_frequency));
+  if (options.boundary == AbsorbingBoundary::matched_layer) {
+    require(options.sponge_elements != 0, "sponge_elements = 0, must be >= 1 of a matched layer");
+    require(options.layer_strength >= 0 && std::isfinite(options.layer_strength),
+            fmt::format("layer_strength = {}, must be >= 0", options.layer_strength));
+    require(options.layer_alpha > 0 && std::isfinite(options.layer_alpha),
+            fmt::format("layer_alpha = {} 1/s, must be > 0", options.layer_alpha));
+    require(options.crossover_frequency == 0,
+            fmt::format("crossover_frequency = {} Hz with a matched layer, must be 0: the layer absorbs low "
+                        "frequencies without a lattice of their own (options --crossover and --boundary)",
+                        options.crossover_frequency));
+  }
   require(options.memory_limit >= 0,
           fmt::format("memory_limit = {} byte, must be >= 0", options.memory_limit));
 }
@@ -105,11 +118,17 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
   if (options.quarter_model) options.half_model = true;
   lattice_options.half_model = options.half_model;
   lattice_options.quarter_model = options.quarter_model;
+  const bool has_layer = options.boundary == AbsorbingBoundary::matched_layer;
+  if (has_layer) {
+    check_matched_layer(site);
+    lattice_options.lanes = 1;  // its elements are dear: no more of them to fill vectors
+  }
   // A wave must find the same length of sponge whatever the size of the elements.
   lattice_options.sponge_elements =
       options.sponge_elements >= 0
           ? options.sponge_elements
-          : static_cast<int>(std::lround(8 * site.points_per_wavelength / 5.5 * 4 / options.degree));
+          : static_cast<int>(
+                std::lround((has_layer ? 4 : 8) * site.points_per_wavelength / 5.5 * 4 / options.degree));
   lattice_options.far_frequency = far_frequency;
   lattice_options.sponge_growth = options.sponge_growth;
   Site extended = site;  // to the farthest corner of what is observed
@@ -141,14 +160,30 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
   const Rheology rheology = make_rheology(site, options.damping);
   const int memories = static_cast<int>(rheology.rates.size());
   const Partition partition(lattice.ny(), lattice.nz(), lattice.degree, ranks ? ranks->size() : 1);
+  const int threads = options.threads > 0 ? options.threads : choose_threads(lattice, ranks);
   double largest_part = 0;
   for (int r = 0; r < partition.ranks(); ++r) {
-    const double part = options.double_precision
-                            ? WaveEngine<double>::compute_memory(lattice, memories, partition.block(r))
-                            : WaveEngine<float>::compute_memory(lattice, memories, partition.block(r));
+    const ElementBlock& block = partition.block(r);
+    double part = options.double_precision ? WaveEngine<double>::compute_memory(lattice, memories, block)
+                                           : WaveEngine<float>::compute_memory(lattice, memories, block);
+    if (has_layer) {
+      const double states = options.double_precision
+                                ? WaveEngine<double>::compute_layer_memory(lattice, block)
+                                : WaveEngine<float>::compute_layer_memory(lattice, block);
+      layer_memory += states;
+      part += states;
+    }
     memory += part;
     largest_part = std::max(largest_part, part);
   }
+  double tables = options.double_precision
+                      ? WaveEngine<double>::compute_table_memory(lattice, partition, rank, threads)
+                      : WaveEngine<float>::compute_table_memory(lattice, partition, rank, threads);
+  double largest_tables = tables;
+  if (ranks) ranks->sum(&tables, 1);
+  if (ranks) ranks->maximise(&largest_tables, 1);
+  memory += tables;
+  largest_part += largest_tables;
   // Of the ranks that share this machine's memory.
   const double memory_here = ranks ? ranks->on_this_node() * largest_part : memory;
   const double limit = options.memory_limit > 0 ? options.memory_limit : 0.8 * physical_memory();
@@ -161,6 +196,10 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
         limit * 1e-9, describe_farthest_receiver(site), describe_slowest_layer(site)));
 
   EngineBoundary boundary;
+  boundary.absorber = options.boundary;
+  boundary.layer_strength = options.layer_strength;
+  boundary.layer_alpha = options.layer_alpha;
+  boundary.layer_speed = site.layers.back().cp;
   boundary.sponge_strength = options.sponge_strength;
   boundary.sponge_speed = site.layers.back().cs;
   boundary.dashpots = options.dashpots;
@@ -170,7 +209,6 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     boundary.origin[0] += f.x / static_cast<double>(loads.footprints.size());
     boundary.origin[1] += f.y / static_cast<double>(loads.footprints.size());
   }
-  const int threads = options.threads > 0 ? options.threads : choose_threads(lattice, ranks);
   if (options.double_precision)
     double_engine = std::make_unique<WaveEngine<double>>(lattice, rheology.materials, rheology.rates,
                                                          boundary, threads, ranks);
@@ -203,6 +241,12 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
     output_step = dt * static_cast<double>(steps_per_output);
   }
   with_engine([&](auto& engine) { engine.set_time_step(dt); });
+  if (options.corrects_time_error) {
+    const double step =
+        (history.last_time() - history.first_time()) / static_cast<double>(loads.time.size() - 1);
+    loads.force = add_time_error(loads.force, step, dt, site.highest_frequency);
+    history = LoadHistory(loads, options.preload_time);
+  }
 
   const double duration = site.duration > 0 ? site.duration : history.last_time() - start + site.decay_time;
   if (!(duration > 0) || !std::isfinite(duration))
@@ -310,6 +354,9 @@ RunSummary WaveSolver::compute_summary() {
   summary.nodes = impl.lattice.nodes();
   summary.dofs = impl.lattice.dofs();
   summary.memory = impl.memory;
+  summary.layer_memory = impl.layer_memory;
+  if (impl.options.boundary == AbsorbingBoundary::matched_layer)
+    summary.layer_elements = impl.lattice.elements() - impl.lattice.interior_elements();
   summary.time_step = impl.dt;
   summary.output_step = impl.output_step;
   summary.checkpoint = impl.compute_checkpoint_size();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "soil/absorbing_boundary.hpp"
 #include "soil/lattice.hpp"
 #include "soil/run_control.hpp"
 #include "soil/site.hpp"
@@ -26,18 +27,30 @@ enum class DampingModel {
 
 /// What the solver may be told; the defaults suit railway vibration.
 struct SolverOptions {
-  int degree = 4;                 ///< polynomial degree, 3..6
-  bool half_model = true;         ///< only y >= 0; loads on the axis, all along y or none of them
-  bool quarter_model = false;     ///< only x >= 0 and y >= 0; one load, at the origin
-  double step_safety = 0.95;      ///< time step / stable limit, 0..1
-  int threads = 0;                ///< 0: one per core, fewer for a small model
+  int degree = 4;              ///< polynomial degree, 3..6
+  bool half_model = true;      ///< only y >= 0; loads on the axis, all along y or none of them
+  bool quarter_model = false;  ///< only x >= 0 and y >= 0; one load, at the origin
+  double step_safety = 0.95;   ///< time step / stable limit, 0..1
+  int threads = 0;             ///< 0: one per core, fewer for a small model
+  /// Takes the time error of the leapfrog away, from loads and records, not from snapshots (time_error.hpp).
+  bool corrects_time_error = false;
   double output_step = 0;         ///< [s]; 0: a few steps, at most 1 / (10 highest_frequency)
   bool double_precision = false;  ///< of the fields (sums are always double)
   DampingModel damping = DampingModel::constant_ratio;
   double preload_time = 0.5;  ///< [s] before the first load sample, over which loads that start non-zero
                               ///< are brought in smoothly; not part of the output
-  int sponge_elements = -1;  ///< see LatticeOptions; -1: as many as make it 8 elements deep at 5.5 points per
-                             ///< wavelength and degree 4, so that a finer mesh keeps the depth
+  /// What stands in the elements at the edge. A matched layer stretches the coordinates across it by s = 1 + d / (i w + alpha),
+  /// d = layer_strength x c_p of the half-space / length x (distance / length)^2: the perfectly matched layer of the
+  /// literature (Komatitsch and Martin 2007; Kucukcoban and Kallivokas; Fathi, Poursartip and Kallivokas 2015), here
+  /// a weak one, for half the elements of the sponge (matched_layer.hpp, docs/soil_boundary.md).
+  /// Not with a crossover frequency, nor on every site (matched_layer_limits.hpp); GroundMotion::energy stays empty.
+  AbsorbingBoundary boundary = AbsorbingBoundary::sponge;
+  double layer_strength = 5;  ///< >= 0; at 10 and more the motion can grow
+  double layer_alpha = 20;    ///< [1/s] > 0
+  int sponge_elements =
+      -1;  ///< of the sponge or the layer, see LatticeOptions; -1: as many as make it 8 (the layer 4)
+           ///< elements deep at 5.5 points per wavelength and degree 4, so that a finer mesh keeps the
+           ///< depth
   double sponge_growth =
       1.1;  ///< 1.15 sends three times as much back: waves meet elements too coarse for them
   double sponge_strength =
@@ -55,7 +68,9 @@ struct SolverOptions {
 /// What a run will cost, known before it starts.
 struct RunSummary {
   long elements = 0, nodes = 0, dofs = 0;
-  double memory = 0;          ///< [byte] of the fields, those below a crossover included
+  double memory = 0;          ///< [byte] of fields, tables and what a crossover or a matched layer adds
+  long layer_elements = 0;    ///< of a matched layer
+  double layer_memory = 0;    ///< [byte] of its states
   double time_step = 0;       ///< [s]
   double output_step = 0;     ///< [s]
   double checkpoint = 0;      ///< [byte] of the file
@@ -77,7 +92,7 @@ struct GroundMotion {
   Eigen::VectorXd taper;                   ///< nl: factor on each load
   Eigen::VectorXd energy;                  ///< nt [J] kinetic + u . K w / 2 (w below; strain energy where
                                            ///< undamped), of the half or the quarter model if one; empty
-                                           ///< with a crossover
+                                           ///< with a crossover or a matched layer
 };
 
 /// Waves in a layered half-space with blocks under surface loads: 3D spectral elements, explicit leapfrog.
@@ -92,8 +107,8 @@ struct GroundMotion {
 class WaveSolver {
  public:
   /// @throws ModelError if site, loads or options are out of range, a receiver or footprint is outside the
-  ///         undamped ground or in an open block, loads of both kinds meet in the half model, or the fields
-  ///         do not fit in memory
+  ///         undamped ground or in an open block, loads of both kinds meet in the half model, the fields do not fit in memory, or
+  ///         a matched layer is refused (matched_layer_limits.hpp)
   /// @param ranks  that share the ground and call every function of the solver together; nullptr: this process alone
   WaveSolver(const Site& site, const SurfaceLoads& loads, const SolverOptions& options = {},
              Ranks* ranks = nullptr);

@@ -92,7 +92,7 @@ struct WaveSolver::Impl {
   std::vector<SurfaceNodeForce> node_forces;
   std::unique_ptr<WaveEngine<float>> float_engine;
   std::unique_ptr<WaveEngine<double>> double_engine;
-  double dt = 0, output_step = 0, memory = 0;
+  double dt = 0, output_step = 0, memory = 0, layer_memory = 0;
   double start = 0;  // time of the first output
   long steps_per_output = 1, outputs = 0, preload_outputs = 0;
   std::unique_ptr<Impl> low;  // what is below the crossover, if there is one

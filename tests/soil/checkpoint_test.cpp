@@ -5,6 +5,8 @@
 #include <fstream>
 
 #include "easydyn/error.hpp"
+#include "soil/disk_space.hpp"
+#include "soil/prediction.hpp"
 #include "tests/soil/small_ground.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -168,6 +170,37 @@ TEST(Restart, GivesTheSameBitsAsARunThatWasNotStopped) {
       }
 }
 
+TEST(Restart, KeepsTheStatesOfAMatchedLayer) {
+  const TemporaryFolder folder;
+  RunControl control;
+  control.checkpoint = folder / "checkpoint.bin";
+  SolverOptions options = test::small_options();
+  options.boundary = AbsorbingBoundary::matched_layer;
+  options.sponge_elements = 2;
+  const SurfaceLoads loads = test::small_loads();
+  const GroundMotion whole = WaveSolver(test::small_site(), loads, options).run();
+  ASSERT_GT(whole.vz.cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(whole.energy.size(), 0);
+  GroundMotion motion;
+  int parts = 0;
+  for (bool complete = false; !complete; ++parts) {
+    ASSERT_LT(parts, 1000);
+    WaveSolver solver(test::small_site(), loads, options);
+    control.restart = parts > 0;
+    complete = run_for(solver, control, std::max(7L, solver.steps() / 5), motion);
+    if (parts == 0) {
+      SolverOptions other = options;
+      other.boundary = AbsorbingBoundary::sponge;
+      WaveSolver sponge(test::small_site(), loads, other);
+      control.restart = true;
+      EXPECT_THAT(message_of<InputError>([&] { sponge.run(control); }),
+                  HasSubstr("option boundary was pml, is sponge"));
+    }
+  }
+  EXPECT_GE(parts, 4);
+  expect_same_bits(motion, whole);
+}
+
 TEST(RankCheckpoints, FollowTheirCheckpointAndGoWithIt) {
   const TemporaryFolder folder;
   for (const char* name : {"checkpoint.rank1.step40.bin", "checkpoint.rank2.step40.bin.partial",
@@ -297,6 +330,27 @@ TEST(CheckpointOfARun, IsWrittenAtItsInterval) {
   // The last one was written before the last step.
   control.restart = true;
   expect_same_bits(solver.run(control), whole);
+}
+
+TEST(CheckpointOfARun, MayLieInTheCurrentFolder) {
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  RunControl control;
+  control.checkpoint = "a.h5";
+  WaveSolver solver(test::small_site(), test::small_loads(), test::small_options());
+  const GroundMotion whole = solver.run();
+  GroundMotion motion;
+  EXPECT_NO_THROW(print_file_summary(stdout, solver, control));
+  EXPECT_FALSE(run_for(solver, control, 20, motion));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.h5"));
+  control.restart = true;
+  EXPECT_TRUE(run_for(solver, control, 1000000, motion));
+  std::filesystem::current_path(before);
+  expect_same_bits(motion, whole);
+  // A disk is asked for what it has.
+  EXPECT_THAT(message_of<InputError>([] { require_disk_space("", 1e18, "checkpoints"); }),
+              HasSubstr(".: checkpoints need 1000000000.0 GB, must be at most "));
 }
 
 TEST(CheckpointOfARun, DoesNotEndTheRunWhenItCannotBeWritten) {

@@ -216,6 +216,9 @@ TEST(WaveEngineOnRanks, HoldsPartOfTheLatticeEach) {
     engine.visit_state(
         [&](const void*, std::size_t field) { bytes[ranks.rank()] += static_cast<double>(field); });
     EXPECT_GT(engine.halo_size(), 0);
+    const Partition partition(lattice.ny(), lattice.nz(), lattice.degree, 4);
+    EXPECT_EQ(engine.table_memory(),
+              WaveEngine<float>::compute_table_memory(lattice, partition, ranks.rank(), 1));
   });
   const double whole = WaveEngine<float>::compute_memory(lattice, 0);
   // A quarter, and lines held twice: half of 22 x 19 lines each way is at most 13 x 10.

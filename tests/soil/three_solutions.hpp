@@ -11,8 +11,8 @@
 #include "soil/layered/layered_prediction.hpp"
 #include "soil/mobility_prediction.hpp"
 #include "soil/prediction.hpp"
-#include "soil/recoupling.hpp"
 #include "soil/site_file.hpp"
+#include "tests/soil/record_difference.hpp"
 
 namespace easydyn::soil::test {
 
@@ -40,18 +40,6 @@ inline SurfaceLoads make_tram_loads(double loaded, double speed, double highest_
   return loads;
 }
 
-/// |a - b| / |b| of each receiver's velocity, all components.
-inline Eigen::VectorXd compare(const Vibrations& a, const Vibrations& b) {
-  const Eigen::VectorXd time = a.time.head((a.time.array() <= b.time(b.time.size() - 1)).count());
-  Eigen::VectorXd difference = Eigen::VectorXd::Zero(a.vz.cols()), size = difference;
-  for (const auto& [mine, other] : {std::pair{&a.vx, &b.vx}, {&a.vy, &b.vy}, {&a.vz, &b.vz}}) {
-    const Eigen::MatrixXd reference = interpolate(b.time, *other, time);
-    difference += (mine->topRows(time.size()) - reference).colwise().squaredNorm().transpose();
-    size += reference.colwise().squaredNorm().transpose();
-  }
-  return (difference.array() / size.array()).sqrt();
-}
-
 /// Largest differences over the receivers.
 struct Differences {
   double elements_from_layered, direct_from_layered, elements_from_direct;
@@ -64,8 +52,9 @@ inline Differences solve_in_three_ways(const Site& site, const SurfaceLoads& loa
   const Vibrations elements = predict_vibrations(responses.compute(), loads);
   WaveSolver solver = make_solver(site, loads);
   const Vibrations direct = predict_vibrations(site, loads, solver, nullptr);
-  const Eigen::VectorXd e = compare(elements, layered), d = compare(direct, layered),
-                        ed = compare(elements, direct);
+  const Eigen::VectorXd e = compute_record_difference(elements, layered),
+                        d = compute_record_difference(direct, layered),
+                        ed = compute_record_difference(elements, direct);
   for (Eigen::Index r = 0; r < e.size(); ++r) {
     std::printf("%s: elements, layered %.4f; direct, layered %.4f; elements, direct %.4f\n",
                 site.receivers[static_cast<std::size_t>(r)].name.c_str(), e(r), d(r), ed(r));

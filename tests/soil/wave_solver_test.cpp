@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easydyn/error.hpp"
+#include "soil/wave_engine.hpp"
 #include "tests/soil/ring_down.hpp"
 
 namespace easydyn::soil {
@@ -260,6 +261,31 @@ TEST(WaveSolver, ReportsProgressToTheEnd) {
     last = fraction;
   });
   EXPECT_EQ(last, 1.0);
+}
+
+TEST(WaveSolver, SaysTheMemoryOfFieldsAndTables) {
+  Site site = small_site();
+  const auto find_memory = [&](int threads) {
+    SolverOptions options = small_options();
+    options.threads = threads;
+    WaveSolver solver(site, pulse({{0, 0, 0.6, 2.4}}), options);
+    const Lattice& lattice = solver.lattice();
+    EXPECT_EQ(solver.compute_summary().memory,
+              WaveEngine<double>::compute_memory(lattice, 0) +
+                  WaveEngine<double>::compute_table_memory(
+                      lattice, Partition(lattice.ny(), lattice.nz(), lattice.degree, 1), 0, threads));
+    return solver.compute_summary().memory;
+  };
+  const double layers = find_memory(1);
+  EXPECT_GT(find_memory(2), layers);  // seams
+  Block wall;
+  wall.y = {2, 3};
+  wall.z = {-1, 0};
+  wall.mirrored = true;
+  wall.material = site.layers[1];
+  site.blocks = {wall};
+  site.receivers = {{"near", {0, 1, 0}}};
+  EXPECT_GT(find_memory(1), 1.01 * layers);
 }
 
 TEST(WaveSolver, NamesWhatIsOutOfRange) {
