@@ -52,5 +52,50 @@ TEST(StaticLoad, DoesNotDriftWhenHeldForTwentySeconds) {
   }
 }
 
+TEST(StaticLoad, LeavesNoMotionThatGrows) {
+  // As above, in double precision with constant damping and the sponge by default, in nearly incompressible ground: what moves from 15 to 20 s is
+  // at most what moved from 10 to 15 s. A growth of 1 % a second would be a ratio of 1.05.
+  Site site;
+  Layer ground;
+  ground.density = 1800;
+  ground.cs = 200;
+  ground.cp = 200 * std::sqrt((2 - 2 * 0.45) / (1 - 2 * 0.45));
+  ground.damping = 0.03;
+  site.layers = {ground};
+  site.receivers = {{"near", {2, 3, 0}}, {"far", {8, 9, 0}}, {"deep", {0, 3, -6}}};
+  site.highest_frequency = 25;
+  site.damping_frequency = 12;
+  site.points_per_wavelength = 4;
+  site.margin = 1;
+  site.duration = 20;
+  SurfaceLoads loads;
+  loads.footprints = {{0, 0, 6, 6}};
+  loads.time = Eigen::VectorXd::LinSpaced(401, 0, 20);
+  loads.force = Eigen::MatrixXd::Constant(401, 1, 1e4);
+  SolverOptions options;
+  options.degree = 3;
+  options.double_precision = true;
+  const GroundMotion motion = WaveSolver(site, loads, options).run();
+  const auto largest = [&](double from, double to) {
+    double v = 0;
+    for (Eigen::Index i = 0; i < motion.time.size(); ++i) {
+      if (motion.time(i) < from || motion.time(i) >= to) continue;
+      for (const Eigen::MatrixXd* component : {&motion.vx, &motion.vy, &motion.vz})
+        v = std::max(v, component->row(i).cwiseAbs().maxCoeff());
+    }
+    return v;
+  };
+  const double deflection = motion.footprint_displacement(motion.time.size() - 1, 0);
+  const double first = largest(10, 15), second = largest(15, 20);
+  // A sum of some hundred forces, each rounded at 1e-16 of its size, moves a node by 1e-14 of the deflection in a step of 1 ms.
+  const double rounding = 1e-11 * deflection;
+  std::printf("velocity per deflection [1/s]: 1..5 s %.2e, 5..10 s %.2e, 10..15 s %.2e, 15..20 s %.2e\n",
+              largest(1, 5) / deflection, largest(5, 10) / deflection, first / deflection,
+              second / deflection);
+  EXPECT_LE(second, std::max(first, rounding));
+  test::record_verification("growth-damped", second / std::max(first, rounding));
+  EXPECT_LT(second, 1e-3 * deflection);
+}
+
 }  // namespace
 }  // namespace easydyn::soil
