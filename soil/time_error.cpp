@@ -36,6 +36,13 @@ Eigen::MatrixXd continue_signals(const Eigen::Ref<const Eigen::MatrixXd>& signal
   return result;
 }
 
+void check_steps(Index rows, double step, double dt, double highest_frequency) {
+  if (!(rows > 1 && step > 0 && dt > 0 && highest_frequency > 0))
+    throw ModelError(fmt::format(
+        "time error: {} rows, steps of {} s and {} s, highest frequency = {} Hz, must be > 1 row, > 0", rows,
+        step, dt, highest_frequency));
+}
+
 /// Rows by which signals are continued: twenty periods of the highest frequency, or their own length.
 Index count_more(const Eigen::Ref<const Eigen::MatrixXd>& signals, double step, double highest_frequency) {
   return std::min(signals.rows() - 1, static_cast<Index>(std::ceil(20 / (highest_frequency * step))));
@@ -46,10 +53,6 @@ struct Frequencies {
   Eigen::VectorXd exact, leapfrog, weight;  // W, w [rad/s], 2 / L x share of the correction
 
   Frequencies(double length, double step, double dt, double highest_frequency) {
-    if (!(length > 0 && step > 0 && dt > 0 && highest_frequency > 0))
-      throw ModelError(fmt::format(
-          "time error: record of {} s, steps of {} s and {} s, highest frequency = {} Hz, must be > 0",
-          length, step, dt, highest_frequency));
     const double end = std::min(
         {2 * std::numbers::pi * whole_band * highest_frequency, 0.9 * std::numbers::pi / step, 1.8 / dt});
     // Nothing wraps around: at the end of the band a signal arrives earlier by dw/dW.
@@ -78,6 +81,7 @@ Eigen::VectorXd make_times(double start, double step, Index count) {
 
 Eigen::MatrixXd add_time_error(const Eigen::Ref<const Eigen::MatrixXd>& signals, double step, double dt,
                                double highest_frequency) {
+  check_steps(signals.rows(), step, dt, highest_frequency);
   const Index n = signals.rows(), more = count_more(signals, step, highest_frequency);
   const Eigen::VectorXd time = make_times(-step * static_cast<double>(more), step, n + 2 * more);
   const Frequencies frequencies(time(time.size() - 1) - time(0), step, dt, highest_frequency);
@@ -99,6 +103,7 @@ Eigen::MatrixXd add_time_error(const Eigen::Ref<const Eigen::MatrixXd>& signals,
 
 Eigen::MatrixXd remove_time_error(const Eigen::Ref<const Eigen::MatrixXd>& records, double start, double step,
                                   double dt, double highest_frequency, LeapfrogRecord kind) {
+  check_steps(records.rows(), step, dt, highest_frequency);
   const Index n = records.rows(), more = count_more(records, step, highest_frequency);
   const Eigen::VectorXd time = make_times(start - step * static_cast<double>(more), step, n + 2 * more);
   const Frequencies frequencies(std::max(time(time.size() - 1), 0.0) - std::min(time(0), 0.0), step, dt,

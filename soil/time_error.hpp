@@ -24,7 +24,7 @@ namespace easydyn::soil {
 /// @param signals  one column per signal, the first row at time 0, where the origin of remove_time_error() is
 /// @param step     of the signals [s]
 /// @param dt       of the leapfrog [s]
-/// @throws ModelError if a step, the length or the frequency is not positive
+/// @throws ModelError if a step or the frequency is not positive, or there are less than two rows
 Eigen::MatrixXd add_time_error(const Eigen::Ref<const Eigen::MatrixXd>& signals, double step, double dt,
                                double highest_frequency);
 

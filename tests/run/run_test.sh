@@ -234,17 +234,20 @@ expect "only what is missing is installed" has "$log" "apt-get install -y --no-i
 cmake"
 rm "$scratch/missing"
 
-# Tests: sanitizers first, the release suite last, and both count.
+# Tests: the release build checks indices; the sanitizers have a build and a command of their own.
 run test -R Rail
 expect "tests succeed" is "$code" 0
 expect "options go to ctest" has "$log" "-R Rail"
 expect "the closing line is ctest's" is "$(tail -n 1 <<<"$out")" "100% tests passed, 0 tests failed out of 1"
-expect "the release suite is last" has "$(tail -n 1 <<<"$log")" "build/test"
+expect "indices are checked" has "$log" "-DEASYDYN_ASSERTIONS=ON"
+expect "the suite is that of the release" has "$(tail -n 1 <<<"$log")" "build/test"
+run sanitize -R Rail
+expect "sanitizers succeed" is "$code" 0
+expect "their build is another" has "$(tail -n 1 <<<"$log")" "build/sanitize"
+expect "options go to their ctest, too" has "$(tail -n 1 <<<"$log")" "-R Rail"
 touch "$scratch/fail_sanitize"
-run test
+run sanitize
 expect "a failure under the sanitizers counts" is "$code" 8
-expect "the release suite runs all the same" has "$(tail -n 2 <<<"$log")" "build/test"
-expect "what failed runs again at the end of the log" has "$(tail -n 1 <<<"$log")" "build/sanitize --rerun-failed"
 
 # Verification: the page is written whatever fails.
 run verify-soil

@@ -123,6 +123,8 @@ TEST(TimeError, RefusesStepsThatAreNotPositive) {
               testing::ThrowsMessage<ModelError>(testing::HasSubstr("steps of 0.001 s and 0 s")));
   EXPECT_THAT([&] { add_time_error(signal, 1e-3, 1e-3, 0); },
               testing::ThrowsMessage<ModelError>(testing::HasSubstr("highest frequency = 0 Hz")));
+  EXPECT_THAT([&] { remove_time_error(signal.head(1), 0, 1e-3, 1e-3, 80, LeapfrogRecord::velocity); },
+              testing::ThrowsMessage<ModelError>(testing::HasSubstr("1 rows")));
 }
 
 }  // namespace
