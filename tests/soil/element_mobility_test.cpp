@@ -47,7 +47,7 @@ double compare_band(const Eigen::MatrixXd& h, const Eigen::MatrixXd& reference, 
   for (double f = lowest; f <= highest; f += highest / 40) {
     Eigen::VectorXcd wave(nt);
     for (Index i = 0; i < nt; ++i) wave(i) = std::polar(1.0, -2 * std::numbers::pi * f * step * double(i));
-    difference += (wave.transpose() * (h - reference).topRows(nt)).squaredNorm();
+    difference += (wave.transpose() * (h.topRows(nt) - reference.topRows(nt))).squaredNorm();
     size += (wave.transpose() * reference.topRows(nt)).squaredNorm();
   }
   return std::sqrt(difference / size);
