@@ -140,7 +140,7 @@ expect "--verify goes to the ground" has "$log" "--output $tree/results/tram --v
 expect "the program gets the others" has "$log" "tram --site $tree/examples/sites/tram.toml --output $tree/results/tram --speed 40"
 run tram --speed 40 --direct --verify
 expect "--direct runs the finite elements under all loads" has "$log" "soil run $tree/examples/sites/tram.toml \
-$tree/results/tram/surface_loads.h5 --output $tree/results/tram --snapshot-step 0.01 --verify"
+$tree/results/tram/surface_loads.h5 --output $tree/results/tram --snapshot-step 0.01 --correct-time --verify"
 expect "--direct needs no impulse responses" lacks "$log" "soil mobility"
 run tram --layered
 expect "--layered predicts from the site file" has "$log" "soil predict $tree/examples/sites/tram.toml"
