@@ -18,7 +18,22 @@ FilterFactors make_filter(double pole, double dt) {
 }  // namespace
 
 template <class T>
-MatchedLayer<T>::Places::Places(const Lattice& lattice, int stride, const ElementBlock& part) {
+MatchedLayer<T>::Ends::Ends(const Lattice& lattice) {
+  constexpr int lanes = Pack<T>::lanes;
+  int used = 0;
+  for (const int end : {0, 1}) {
+    const int count = lattice.sponge_x[end];
+    if (count == 0) continue;
+    pieces.push_back({end == 0 ? 0 : lattice.nx() - count, used, count + 1});
+    used += count + 1;
+  }
+  for (int first = 0; first < used - 1; first += lanes) packs.push_back({first, true});
+  stride = (static_cast<int>(packs.size()) + 1) * lanes;  // a pack reads one lane further
+}
+
+template <class T>
+MatchedLayer<T>::Places::Places(const Lattice& lattice, int stride, const ElementBlock& part)
+    : ends(lattice) {
   constexpr int lanes = Pack<T>::lanes;
   const int N = lattice.degree, nx = lattice.nx();
   for (int first = 0; first < stride; first += lanes) {
@@ -34,7 +49,6 @@ MatchedLayer<T>::Places::Places(const Lattice& lattice, int stride, const Elemen
       }
     }
     if (has_element) all_elements.push_back({first, has_layer_element});
-    if (has_layer_element) layer_elements.push_back({first, true});
     if (has_node) all_nodes.push_back({first, has_layer_node});
     if (has_layer_node) layer_nodes.push_back({first, true});
   }
@@ -49,7 +63,7 @@ MatchedLayer<T>::Places::Places(const Lattice& lattice, int stride, const Elemen
     for (int ey = part.rows[0]; ey < part.rows[1]; ++ey) {
       const int others = (is_layer(lattice.sponge_y, ey, lattice.ny()) ? 1 : 0) +
                          (is_layer(lattice.sponge_z, ez, lattice.nz()) ? 1 : 0);
-      const std::size_t axes = count_axes(others > 0 ? all_elements : layer_elements, others);
+      const std::size_t axes = count_axes(others > 0 ? all_elements : ends.packs, others);
       row.push_back(axes > 0 ? static_cast<std::ptrdiff_t>(element_states) : -1);
       element_states += axes * per_element_axis;
     }
@@ -71,6 +85,12 @@ double MatchedLayer<T>::compute_memory(const Lattice& lattice, int stride, const
 }
 
 template <class T>
+std::size_t MatchedLayer<T>::count_scratch(const Lattice& lattice) {
+  const int n = lattice.degree + 1;
+  return static_cast<std::size_t>(2) * n * n * 3 * lattice.degree * Ends(lattice).stride;
+}
+
+template <class T>
 MatchedLayer<T>::MatchedLayer(const Lattice& lattice, const EngineBoundary& boundary,
                               const AxisTables<T>& axes, int stride, const ElementBlock& part)
     : lattice_(lattice),
@@ -78,26 +98,42 @@ MatchedLayer<T>::MatchedLayer(const Lattice& lattice, const EngineBoundary& boun
       stride_(stride),
       alpha_(boundary.layer_alpha),
       places_(lattice, stride, part),
-      function_(find_stretched_function<T>(lattice.degree)),
-      rmx_(axes.rmx) {
+      function_(find_stretched_function<T>(lattice.degree)) {
   const int N = lattice.degree, nX = lattice.nx() * N + 1;
   const double strength = boundary.layer_strength * boundary.layer_speed;
   d_y_ = compute_edge_damping(N, lattice.y, lattice.interior_y(), strength);
   d_z_ = compute_edge_damping(N, lattice.z, lattice.interior_z(), strength);
   const std::vector<double> d_x = compute_edge_damping(N, lattice.x, lattice.interior_x(), strength);
-  const std::size_t table = static_cast<std::size_t>(N) * stride;
-  for (auto* values : {&d_x_, &a_x_, &g_x_, &plain_mass_}) values->assign(table, T(0));
-  for (auto* values : {&hx_, &slope_x_}) values->assign(static_cast<std::size_t>(stride), T(0));
+  const auto size = [&](Tables& tables, int lanes) {
+    for (auto* values : {&tables.rmx, &tables.d, &tables.a, &tables.g})
+      values->assign(static_cast<std::size_t>(N) * lanes, T(0));
+    for (auto* values : {&tables.h, &tables.slope}) values->assign(static_cast<std::size_t>(lanes), T(0));
+  };
+  size(row_, stride);
+  row_.rmx = axes.rmx;
+  plain_mass_.assign(row_.rmx.size(), T(0));
   for (int X = 0; X < nX; ++X) {
     const std::size_t place = static_cast<std::size_t>(X % N) * stride + X / N;
-    d_x_[place] = static_cast<T>(d_x[X]);
+    row_.d[place] = static_cast<T>(d_x[X]);
     if (!is_behind(lattice.sponge_x, X, N, lattice.nx())) plain_mass_[place] = static_cast<T>(axes.mx[X]);
   }
   for (int ex = 0; ex < lattice.nx(); ++ex) {
     const double h = lattice.x[ex + 1] - lattice.x[ex];
-    hx_[ex] = static_cast<T>(h);
-    slope_x_[ex] = static_cast<T>(2 / h);
+    row_.h[ex] = static_cast<T>(h);
+    row_.slope[ex] = static_cast<T>(2 / h);
   }
+  const int short_stride = places_.ends.stride;
+  size(ends_, short_stride);
+  for (const Piece& piece : places_.ends.pieces)
+    for (int e = 0; e < piece.count; ++e) {
+      for (int i = 0; i < N; ++i) {
+        ends_.rmx[i * short_stride + piece.to + e] = row_.rmx[i * stride + piece.from + e];
+        ends_.d[i * short_stride + piece.to + e] = row_.d[i * stride + piece.from + e];
+      }
+      if (e + 1 == piece.count) continue;  // its element is not of the layer
+      ends_.h[piece.to + e] = row_.h[piece.from + e];
+      ends_.slope[piece.to + e] = row_.slope[piece.from + e];
+    }
   element_state_.assign(places_.element_states, T(0));
   line_state_.assign(places_.line_states, T(0));
 }
@@ -106,11 +142,12 @@ template <class T>
 void MatchedLayer<T>::set_time_step(double dt) {
   dt_ = dt;
   const int N = lattice_.degree, n = N + 1;
-  for (std::size_t p = 0; p < d_x_.size(); ++p) {
-    const FilterFactors quotient = make_filter(alpha_ + static_cast<double>(d_x_[p]), dt);
-    a_x_[p] = static_cast<T>(quotient.a);
-    g_x_[p] = static_cast<T>(quotient.g);
-  }
+  for (Tables* tables : {&row_, &ends_})
+    for (std::size_t p = 0; p < tables->d.size(); ++p) {
+      const FilterFactors quotient = make_filter(alpha_ + static_cast<double>(tables->d[p]), dt);
+      tables->a[p] = static_cast<T>(quotient.a);
+      tables->g[p] = static_cast<T>(quotient.g);
+    }
   const auto fill = [&](const std::vector<double>& d, int elements, std::vector<T>& points) {
     points.clear();
     for (int e = 0; e < elements; ++e) {
@@ -130,25 +167,53 @@ void MatchedLayer<T>::set_to_rest() {
 }
 
 template <class T>
-void MatchedLayer<T>::add_forces(const Tile<T>& tile, int ey, int ez) {
+void MatchedLayer<T>::copy_ends(const T* from, T* to) const {
+  const int rows = 3 * lattice_.degree, stride = places_.ends.stride;
+  for (const Piece& piece : places_.ends.pieces)
+    for (int r = 0; r < rows; ++r)
+      std::copy_n(from + r * stride_ + piece.from, piece.count, to + r * stride + piece.to);
+}
+
+template <class T>
+void MatchedLayer<T>::add_ends(const T* from, T* to) const {
+  const int rows = 3 * lattice_.degree, stride = places_.ends.stride;
+  for (const Piece& piece : places_.ends.pieces)
+    for (int r = 0; r < rows; ++r)
+      for (int e = 0; e < piece.count; ++e)
+        to[r * stride_ + piece.from + e] += from[r * stride + piece.to + e];
+}
+
+template <class T>
+void MatchedLayer<T>::add_forces(const Tile<T>& tile, int ey, int ez, T* scratch) {
   const std::ptrdiff_t begin =
       places_.row[static_cast<std::size_t>(ez - part_.slabs[0]) * (part_.rows[1] - part_.rows[0]) +
                   (ey - part_.rows[0])];
   if (begin < 0) return;
   const int n = lattice_.degree + 1;
+  const std::size_t lines = lines_of_row(), ends_size = ends_line_size();
+  const bool is_whole = fills(ey, ez);
   StretchedRow<T> row;
-  std::copy_n(tile.w, n * n, row.w);
-  std::copy_n(tile.f, n * n, row.f);
-  row.stride = stride_;
-  row.rmx = rmx_.data();
-  row.hx = hx_.data();
-  row.slope_x = slope_x_.data();
+  for (std::size_t l = 0; l < lines; ++l) {
+    row.w[l] = tile.w[l];
+    row.f[l] = tile.f[l];
+    if (is_whole) continue;
+    T *w = scratch + 2 * l * ends_size, *f = w + ends_size;
+    copy_ends(tile.w[l], w);
+    std::fill_n(f, ends_size, T(0));
+    row.w[l] = w;
+    row.f[l] = f;
+  }
+  const Tables& tables = is_whole ? row_ : ends_;
+  row.stride = is_whole ? stride_ : places_.ends.stride;
+  row.rmx = tables.rmx.data();
+  row.hx = tables.h.data();
+  row.slope_x = tables.slope.data();
   row.hy = tile.hy;
   row.hz = tile.hz;
   row.lambda = tile.lambda;
   row.mu = tile.mu;
-  row.subtracts_plain = !fills(ey, ez);
-  const std::vector<LanePack>& packs = fills(ey, ez) ? places_.all_elements : places_.layer_elements;
+  row.subtracts_plain = !is_whole;
+  const std::vector<LanePack>& packs = is_whole ? places_.all_elements : places_.ends.packs;
   row.packs = packs.data();
   row.pack_count = static_cast<int>(packs.size());
   row.stretched_y = fills_rows(ey);
@@ -157,9 +222,9 @@ void MatchedLayer<T>::add_forces(const Tile<T>& tile, int ey, int ez) {
   const FilterFactors product = make_filter(alpha_, dt_);
   row.a = static_cast<T>(product.a);
   row.g = static_cast<T>(product.g);
-  row.d_x = d_x_.data();
-  row.a_x = a_x_.data();
-  row.g_x = g_x_.data();
+  row.d_x = tables.d.data();
+  row.a_x = tables.a.data();
+  row.g_x = tables.g.data();
   row.d_y = y_.data() + static_cast<std::size_t>(3) * n * ey;
   row.a_y = row.d_y + n;
   row.g_y = row.a_y + n;
@@ -167,6 +232,8 @@ void MatchedLayer<T>::add_forces(const Tile<T>& tile, int ey, int ez) {
   row.a_z = row.d_z + n;
   row.g_z = row.a_z + n;
   function_(row);
+  if (!is_whole)
+    for (std::size_t l = 0; l < lines; ++l) add_ends(row.f[l], tile.f[l]);
 }
 
 template <class T>
@@ -196,7 +263,7 @@ void MatchedLayer<T>::add_inertia(int Y, int Z, double line_mass, const T* u, T*
     for (int c = 0; c < 3; ++c)
       for (int i = 0; i < N; ++i) {
         const std::size_t place = static_cast<std::size_t>(c * N + i) * stride_ + p.first;
-        const V d_x = load_pack(d_x_.data() + static_cast<std::size_t>(i) * stride_ + p.first);
+        const V d_x = load_pack(row_.d.data() + static_cast<std::size_t>(i) * stride_ + p.first);
         const V c1 = d_x + sum;
         const V u_p = load_pack(u + place), x1 = u_p - alpha * filter(u_p);
         V inertia = -alpha * c1 * x1;

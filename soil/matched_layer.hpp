@@ -40,7 +40,8 @@ class MatchedLayer {
                const ElementBlock& part);
 
   static double compute_memory(const Lattice& lattice, int stride,
-                               const ElementBlock& part);  ///< [byte] of states
+                               const ElementBlock& part);    ///< [byte] of states
+  static std::size_t count_scratch(const Lattice& lattice);  ///< values that a thread needs beside them
   void set_time_step(double dt);
   void set_to_rest();
   /// Calls use(data, bytes) for each array of states.
@@ -56,7 +57,9 @@ class MatchedLayer {
   bool fills(int ey, int ez) const { return fills_rows(ey) || fills_slabs(ez); }
   /// Adds the forces of the layer's elements of a row; of a row that it does not fill, their difference from those of plain
   /// elements. Takes a step of the row's states.
-  void add_forces(const Tile<T>& tile, int ey, int ez);
+  /// @param scratch  scratch_size() values of this thread
+  void add_forces(const Tile<T>& tile, int ey, int ez, T* scratch);
+  std::size_t scratch_size() const { return count_scratch(lattice_); }
 
   /// Whether all nodes of a line lie behind the inner faces of the layer.
   bool holds_line(int Y, int Z) const { return count_axes_across(Y, Z) > 0; }
@@ -67,12 +70,30 @@ class MatchedLayer {
   const AlignedVector<T>& plain_mass() const { return plain_mass_; }
 
  private:
+  /// Lanes of a row, copied to other lanes.
+  struct Piece {
+    int from, to, count;
+  };
+  /// The elements at both ends of a row that the layer does not fill, side by side, so that they fill vectors: each end
+  /// with one lane more, for the right end of its last element.
+  struct Ends {
+    Ends(const Lattice& lattice);
+    std::vector<Piece> pieces;
+    std::vector<LanePack> packs;
+    int stride = 0;
+  };
   /// Where the states of each row and line begin; -1: it has none.
   struct Places {
     Places(const Lattice& lattice, int stride, const ElementBlock& part);
-    std::vector<LanePack> all_elements, layer_elements, all_nodes, layer_nodes;  // along x
+    Ends ends;
+    std::vector<LanePack> all_elements, all_nodes, layer_nodes;  // along x
     std::vector<std::ptrdiff_t> row, line;
     std::size_t element_states = 0, line_states = 0;
+  };
+  /// Along x, per lane.
+  struct Tables {
+    AlignedVector<T> rmx, d, a, g;  // [N][stride] 1 / m_x, d and filters of quotients
+    AlignedVector<T> h, slope;      // [stride]
   };
   static bool is_layer(const std::array<int, 2>& ends, int e, int count) {
     return e < ends[0] || e >= count - ends[1];
@@ -87,15 +108,25 @@ class MatchedLayer {
            (is_behind(lattice_.sponge_z, Z, N, lattice_.nz()) ? 1 : 0);
   }
 
+  std::size_t lines_of_row() const {
+    return static_cast<std::size_t>(lattice_.degree + 1) * (lattice_.degree + 1);
+  }
+  std::size_t ends_line_size() const {
+    return static_cast<std::size_t>(3) * lattice_.degree * places_.ends.stride;
+  }
+  void copy_ends(const T* from, T* to) const;
+  void add_ends(const T* from, T* to) const;
+
   Lattice lattice_;
   ElementBlock part_;
   int stride_;
   double alpha_, dt_ = 0;
   Places places_;
   StretchedFunction<T> function_;
-  std::vector<double> d_y_, d_z_;                                       // of the nodes [1/s]
-  AlignedVector<T> rmx_, d_x_, a_x_, g_x_, hx_, slope_x_, plain_mass_;  // [N][stride], [stride]
-  std::vector<T> y_, z_;  // d, a, g of the points of each element: [element][3][N + 1]
+  std::vector<double> d_y_, d_z_;  // of the nodes [1/s]
+  Tables row_, ends_;              // of whole rows, of their ends side by side
+  AlignedVector<T> plain_mass_;    // [N][stride]
+  std::vector<T> y_, z_;           // d, a, g of the points of each element: [element][3][N + 1]
   AlignedVector<T> element_state_, line_state_;
 };
 

@@ -78,7 +78,10 @@ WaveEngine<T>::WaveEngine(const Lattice& lattice, const std::vector<EngineMateri
   for (Scratch& s : scratch_) {
     s.w.assign(2 * guard + n * n * line_size(), T(0));
     s.f.assign(guard + n * n * line_size(), T(0));
-    if (layer_) s.row.assign(guard + n * n * line_size(), T(0));
+    if (layer_) {
+      s.row.assign(guard + n * n * line_size(), T(0));
+      s.ends.assign(layer_->scratch_size(), T(0));
+    }
     const int lines = plan_.most_rows() * N_ + 1;
     for (auto& plane : s.plane) plane.assign(guard + lines * line_size(), T(0));
   }
@@ -154,8 +157,12 @@ double WaveEngine<T>::table_memory() const {
 }
 
 template <class T>
-double WaveEngine<T>::compute_layer_memory(const Lattice& lattice, const ElementBlock& part) {
-  return MatchedLayer<T>::compute_memory(lattice, padded_lanes(lattice.nx(), Pack<T>::lanes), part);
+double WaveEngine<T>::compute_layer_memory(const Lattice& lattice, const ElementBlock& part, int threads) {
+  const int n = lattice.degree + 1, stride = padded_lanes(lattice.nx(), Pack<T>::lanes);
+  const double scratch = static_cast<double>(guard) + n * n * 3.0 * lattice.degree * stride +
+                         static_cast<double>(MatchedLayer<T>::count_scratch(lattice));
+  return MatchedLayer<T>::compute_memory(lattice, stride, part) +
+         static_cast<double>(sizeof(T)) * count_team(threads, part) * scratch;
 }
 
 template <class T>
@@ -290,7 +297,7 @@ void WaveEngine<T>::apply_row(Tile<T>& tile, Field field, MatchedLayer<T>* layer
   else
     tile_function_(tile);
   add_blocks(tile, field, ey, ez);
-  layer->add_forces(tile, ey, ez);
+  layer->add_forces(tile, ey, ez, scratch.ends.data());
   for (int a = 0; a < lines; ++a)
     if (begun[a]) {
       for (std::size_t p = 0; p < size; ++p) begun[a][p] += tile.f[a][p];

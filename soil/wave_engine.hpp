@@ -67,8 +67,8 @@ class WaveEngine {
   static double compute_table_memory(const Lattice& lattice, const Partition& partition, int rank,
                                      int threads);
   double table_memory() const;  ///< [byte] the same, counted
-  static double compute_layer_memory(const Lattice& lattice,
-                                     const ElementBlock& part);  ///< [byte] of the states of a matched layer
+  /// [byte] of the states of a matched layer, and of what threads compute its rows in.
+  static double compute_layer_memory(const Lattice& lattice, const ElementBlock& part, int threads);
   const Partition& partition() const { return partition_; }
   const ElementBlock& part() const { return part_; }  ///< of this rank
   /// Whether this rank holds the nodes of a line; only then its functions may be asked about them.
@@ -134,8 +134,8 @@ class WaveEngine {
   };
   struct Scratch {  // of one thread
     AlignedVector<T> w, f, plane[2];
-    AlignedVector<T> row;       // lines of one row that has elements of the matched layer
-    Sums sums, sums_of_others;  // of the lines that this rank owns, that another one does
+    AlignedVector<T> row, ends;  // lines of one row that has elements of the matched layer; of its ends
+    Sums sums, sums_of_others;   // of the lines that this rank owns, that another one does
   };
 
   std::size_t line_size() const { return static_cast<std::size_t>(3) * N_ * stride_; }

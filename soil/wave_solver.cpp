@@ -168,8 +168,8 @@ WaveSolver::Impl::Impl(const Site& site_, const SurfaceLoads& given, const Solve
                                            : WaveEngine<float>::compute_memory(lattice, memories, block);
     if (has_layer) {
       const double states = options.double_precision
-                                ? WaveEngine<double>::compute_layer_memory(lattice, block)
-                                : WaveEngine<float>::compute_layer_memory(lattice, block);
+                                ? WaveEngine<double>::compute_layer_memory(lattice, block, threads)
+                                : WaveEngine<float>::compute_layer_memory(lattice, block, threads);
       layer_memory += states;
       part += states;
     }
