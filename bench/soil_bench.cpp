@@ -136,9 +136,21 @@ void step_double(benchmark::State& state, int degree, int mechanisms) {
 
 void triad(benchmark::State& state) {
   const int threads = static_cast<int>(state.range(0));
+  std::vector<double> seconds;
+  Triad::get().sample(threads, 5, seconds);
+  const auto begin = std::chrono::steady_clock::now();
   for (auto _ : state) Triad::get().run(threads);
+  const double used = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  Triad::get().sample(threads, 5, seconds);
+  // What the memory allows the elastic step in single precision: u and v, in and out.
+  const double bytes = Triad::get().bytes(), moved = 16;
   state.counters["triad_bytes_per_second"] =
-      benchmark::Counter(Triad::get().bytes(), benchmark::Counter::kIsIterationInvariantRate);
+      benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["dof_per_second"] =
+      benchmark::Counter(bytes / moved, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["bytes_per_dof"] = moved;
+  state.counters["roofline_fraction"] =  // of itself: how even the minute was
+      static_cast<double>(state.iterations()) * bytes / used / (bytes / median(seconds));
 }
 
 /// 5 m of 150 m/s on 300 m/s, receivers beside the middle of 240 m of track.
@@ -177,18 +189,31 @@ void train_superposition(benchmark::State& state) {
   const Site site = make_site();
   const SurfaceLoads loads = make_train();
   const double start = cpu_seconds();
-  double mobility_seconds = 0, superposition_seconds = 0;
+  double mobility_seconds = 0, superposition_seconds = 0, moved = 0;
+  std::vector<double> triad_seconds;
+  Triad::get().sample(threads, 5, triad_seconds);
   for (auto _ : state) {
     const auto begin = std::chrono::steady_clock::now();
     Mobility mobility = list_distances(loads.footprints, site.receivers);
     update_mobility(LayeredGround(site, GroundDamping::maxwell_body), site.highest_frequency, mobility, 0,
                     threads);
     const auto middle = std::chrono::steady_clock::now();
-    benchmark::DoNotOptimize(superpose(mobility, site, loads, {.threads = threads}));
+    const GroundMotion motion = superpose(mobility, site, loads, {.threads = threads});
     mobility_seconds += std::chrono::duration<double>(middle - begin).count();
     superposition_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - middle).count();
+    moved = 8.0 *
+            static_cast<double>(loads.force.size() + motion.vx.size() + motion.vy.size() + motion.vz.size() +
+                                motion.footprint_displacement.size() + mobility.hx.size() +
+                                mobility.hy.size() + mobility.hz.size() + mobility.mean.size());
   }
+  Triad::get().sample(threads, 5, triad_seconds);
   const double runs = static_cast<double>(state.iterations());
+  // A degree of freedom: a sample of one component at one receiver, or of the displacement under one footprint. Roofline:
+  // loads and responses read, motion written once.
+  const double dofs = 2501.0 * (3 * 5 + 401), seconds = (mobility_seconds + superposition_seconds) / runs;
+  state.counters["dof_per_second"] = dofs / seconds;
+  state.counters["bytes_per_dof"] = moved / dofs;
+  state.counters["roofline_fraction"] = moved / seconds / (Triad::get().bytes() / median(triad_seconds));
   state.counters["cpu_seconds"] = (cpu_seconds() - start) / runs;
   state.counters["mobility_seconds"] = mobility_seconds / runs;
   state.counters["superposition_seconds"] = superposition_seconds / runs;
