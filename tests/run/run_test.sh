@@ -255,6 +255,8 @@ expect "verification succeeds" is "$code" 0
 expect "only its programs are built" has "$log" "--target soil_verification"
 expect "its tests are run" has "$log" "^(Lamb[.]IsSolved)\$"
 expect "the page is named" is "$(tail -n 1 <<<"$out")" "docs/verification-soil.md"
+expect "the last message counts" is "$(tail -n 1 <<<"$err")" \
+  "verification: 1 cases: 1 held, 0 missed, 0 failed or not run"
 expect "the page has the figure" has "$(<docs/verification-soil.md)" "| 0.5 % | 1 % | held |"
 touch "$scratch/fail_verification"
 run verify-soil
