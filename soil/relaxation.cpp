@@ -55,11 +55,14 @@ Relaxation fit_relaxation(double ratio, double lowest, double highest, double re
   return body;
 }
 
+DampingBand choose_damping_band(double highest_frequency, double reference) {
+  const double highest = std::max(highest_frequency, reference);
+  return {std::min({highest / 40, highest_frequency / 10, reference}), highest};
+}
+
 Relaxation fit_relaxation_of_band(double ratio, double highest_frequency, double reference) {
-  const double lowest = std::min(highest_frequency / 10, reference),
-               highest = std::max(highest_frequency, reference);
-  const int mechanisms = highest <= 10.001 * lowest ? 2 : 3;
-  return fit_relaxation(ratio, lowest, highest, reference, mechanisms);
+  const DampingBand band = choose_damping_band(highest_frequency, reference);
+  return fit_relaxation(ratio, band.lowest, band.highest, reference, 3);
 }
 
 }  // namespace easydyn::soil

@@ -30,8 +30,16 @@ struct Relaxation {
 /// @param reference  frequency at which the modulus is given [Hz]; the ratio holds exactly there
 Relaxation fit_relaxation(double ratio, double lowest, double highest, double reference, int mechanisms);
 
-/// The body that stands for a constant damping ratio in a model that claims frequencies up to `highest_frequency`
-/// [Hz]: held from a tenth of it to it, and at `reference`; two mechanisms over a decade, three over more.
+/// The frequencies [Hz] over which the body of a model holds its damping ratio, lowest and highest.
+struct DampingBand {
+  double lowest, highest;
+};
+/// From a fortieth of the highest frequency that a model claims (2 Hz for 80 Hz) to it. Where the reference lies beyond,
+/// it is part of the band, which then begins at a fortieth of it, and at a tenth of the model's highest at the latest.
+DampingBand choose_damping_band(double highest_frequency, double reference);
+
+/// The body that stands for a constant damping ratio over choose_damping_band(): three mechanisms, which hold 1 to 5 %
+/// within a twenty-fifth of it over a factor of 40, and within a fifteenth where the reference is at an end.
 Relaxation fit_relaxation_of_band(double ratio, double highest_frequency, double reference);
 
 }  // namespace easydyn::soil

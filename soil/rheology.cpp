@@ -14,8 +14,8 @@ namespace {
 
 // The fit spans the band of the site and the frequency at which the ratio is given.
 Relaxation fit_constant_ratio(const Site& site, const Layer& layer) {
-  const double low = site.highest_frequency / 10, high = site.highest_frequency,
-               reference = site.damping_frequency;
+  const double high = site.highest_frequency, reference = site.damping_frequency,
+               low = std::max(high / 40, choose_damping_band(high, reference).lowest);
   const Relaxation body = fit_relaxation_of_band(layer.damping, high, reference);
   bool is_sound = body.weights.allFinite() && body.weights.sum() < 1;
   for (double f = low; f <= 1.001 * high; f *= 1.2)
