@@ -30,7 +30,8 @@ case ${1:-} in
       }
       function say(text) { print "verification: " text >"/dev/stderr" }
       function is_number(text) { return text ~ /^[-+0-9.e]+$/ }
-      function show(figure) { return sprintf("%.2g", figure) }
+      # Three digits: with two, -35.2 and -34.6 both look like the -35 that they are to hold.
+      function show(figure) { return sprintf("%.3g", figure) }
       # A ratio stands alone, all else has its unit.
       function with_unit(text, unit) { return unit == "1" || unit == "" ? text : text " " unit }
       function emit(text) { body = body text "\n" }
