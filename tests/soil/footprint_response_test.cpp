@@ -163,7 +163,7 @@ TEST(FootprintResponse, TendsToBoussinesqAtLowFrequency) {
       worst = std::max(worst, (computed * mu - exact).norm() / exact.norm());
     }
   }
-  test::record_verification("boussinesq", worst);
+  test::record_verification("static-limit", worst);
 }
 
 TEST(FootprintResponse, IsReciprocalBetweenTheSurfaceAndPointsBelow) {
