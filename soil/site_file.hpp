@@ -18,7 +18,8 @@ namespace easydyn::soil {
 ///     density = 1800                          # [kg/m3]
 ///     damping = 0.03                          # ratio at solver.damping_frequency, >= 0 and < 0.2
 ///     cs = 150                                # [m/s] shear wave speed, with cp [m/s] or nu
-///     nu = 0.33                               # Poisson ratio, 0 to 0.49, also where it follows from cp
+///     nu = 0.33                               # Poisson ratio, 0 to 0.4995, also where it follows from cp: below
+///                                             # a water table cp is about 1500 m/s
 ///     # E = 1.1e8                             # [Pa] with nu, in place of cs; cs, cp and E hold at
 ///                                             # solver.damping_frequency
 ///     [[block]]                               # optional: a box of other material, or of air

@@ -311,9 +311,9 @@ TEST(SiteFileFault, NamesFileLineColumnObjectKeyValueAndRange) {
   EXPECT_EQ(fault_of("thickness = 2.0", "thickness = 0"),
             "site.toml:6:13: layer \"loam\": thickness = 0 m, must be > 0");
   EXPECT_EQ(fault_of("nu = 0.33", "nu = 0.5"),
-            "site.toml:10:6: layer \"loam\": nu = 0.5, must be >= 0 and <= 0.49");
+            "site.toml:10:6: layer \"loam\": nu = 0.5, must be >= 0 and <= 0.4995");
   EXPECT_EQ(fault_of("nu = 0.33", "nu = -0.1"),
-            "site.toml:10:6: layer \"loam\": nu = -0.1, must be >= 0 and <= 0.49");
+            "site.toml:10:6: layer \"loam\": nu = -0.1, must be >= 0 and <= 0.4995");
   EXPECT_EQ(fault_of("damping = 0.03", "damping = 0.2"),
             "site.toml:8:11: layer \"loam\": damping = 0.2, must be >= 0 and < 0.2");
   EXPECT_EQ(fault_of("highest_frequency = 40", "highest_frequency = 0"),
@@ -375,9 +375,9 @@ TEST(SiteFileFault, IsAMissingOrContradictingStiffness) {
   EXPECT_THAT(fault_of("nu = 0.33\n", "\n"), EndsWith("no compression wave speed: give cp or nu beside cs"));
   EXPECT_THAT(fault_of("cs = 150\nnu = 0.33\n", "E = 1e8\n"), EndsWith("layer \"loam\": \"nu\" is missing"));
   EXPECT_THAT(fault_of("cp = 600", "cp = 400"),
-              AllOf(HasSubstr("site.toml:17:6: layer 2: cp = 400 m/s, must be >= 424.264 and <= 2142.43"),
+              AllOf(HasSubstr("site.toml:17:6: layer 2: cp = 400 m/s, must be >= 424.264 and <= 9491.58"),
                     HasSubstr("cs = 300 m/s")));
-  EXPECT_THAT(fault_of("cp = 600", "cp = 4000"), HasSubstr("cp = 4000 m/s"));
+  EXPECT_THAT(fault_of("cp = 600", "cp = 9600"), HasSubstr("cp = 9600 m/s"));
 }
 
 TEST(SiteFileFault, IsAMissingPart) {
