@@ -236,12 +236,14 @@ StoredMobility ElementMobility::compute(const RunControl& control) {
   if (site_.blocks.empty()) {
     if (const ResponseRest rest = find_rest(layered); rest.share > stored.rest.share) stored.rest = rest;
     set_shifts(layered, stored.mobility);
-    stored.parameters.push_back({"mesh", "footprints nearer to each other are by the layered half-space",
-                                 find_element_side(solver_.lattice()), "m", "computed"});
+    stored.parameters.push_back(
+        {"mesh", near_footprints_row, find_element_side(solver_.lattice()), "m", "computed"});
   }
-  if (!far_.shifts.empty()) {
-    stored.parameters.push_back({"mesh", "footprints farther away along x are by the layered half-space",
-                                 find_reach(near_), "m", "computed"});
+  if (!far_.shifts.empty())
+    stored.parameters.push_back({"mesh", far_footprints_row, find_reach(near_), "m", "computed"});
+  for (const auto& shift : stored.mobility.shifts) {
+    const bool is_layered = std::ranges::find(layered.shifts, shift) != layered.shifts.end();
+    stored.shift_methods.emplace_back(is_layered ? layered_method : element_method);
   }
   stored.parameters.push_back(describe_rest(stored.rest));
   return stored;

@@ -31,6 +31,7 @@ struct ElementMobilityOptions {
 /// blocks the responses beyond are those of the layered half-space, in a window of their own, which saves half of the
 /// mesh. So are those of footprints nearer to each other than an element is long, the loaded one first of all: elements
 /// that only resolve the waves are too stiff under a smaller load. With blocks these are as the elements have them.
+/// StoredMobility::shift_methods says which are which.
 ///
 /// The ground may vary with y and z: blocks without ends along x, symmetric about y = 0.
 class ElementMobility {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <initializer_list>
 #include <memory>
@@ -111,8 +112,10 @@ StoredMobility compute_by_elements(ElementMobility& mobility, RunControl control
 void print_mobility(const StoredMobility& stored) {
   const Mobility& m = stored.mobility;
   fmt::print("method     {}\nfootprint  {} m x {} m\n", stored.method, m.length, m.width);
-  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints\n", stored.window,
-             m.places.size(), m.shifts.size());
+  const auto layered = std::ranges::count(stored.shift_methods, layered_method);
+  fmt::print("responses  {:.2f} s at {} distances of receivers, {} of footprints{}\n", stored.window,
+             m.places.size(), m.shifts.size(),
+             layered > 0 ? fmt::format(" ({} of them by the {})", layered, layered_method) : "");
 }
 
 // The exit status.

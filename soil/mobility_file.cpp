@@ -7,6 +7,7 @@
 
 #include "easydyn/error.hpp"
 #include "easydyn/visu/parameter_json.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/site_file.hpp"
 
 namespace easydyn::soil {
@@ -62,6 +63,18 @@ std::string find_fault(const Mobility& m) {
   return {};
 }
 
+std::string find_fault(const StoredMobility& stored) {
+  const std::vector<std::string>& methods = stored.shift_methods;
+  if (!methods.empty() && methods.size() != stored.mobility.shifts.size())
+    return fmt::format("\"/neighbour/method\" has {} values, must have {}, one per footprint", methods.size(),
+                       stored.mobility.shifts.size());
+  for (const std::string& method : methods)
+    if (method != layered_method && method != element_method)
+      return fmt::format("\"/neighbour/method\" holds \"{}\", must be \"{}\" or \"{}\"", method,
+                         layered_method, element_method);
+  return find_fault(stored.mobility);
+}
+
 template <std::size_t N>
 Eigen::MatrixXd to_matrix(const std::vector<std::array<double, N>>& rows) {
   Eigen::MatrixXd matrix(static_cast<Index>(rows.size()), static_cast<Index>(N));
@@ -104,7 +117,7 @@ std::string name_of(GroundDamping damping) {
 void write_mobility(const std::filesystem::path& path, const StoredMobility& stored,
                     const results::Provenance& provenance) {
   const Mobility& m = stored.mobility;
-  if (const std::string fault = find_fault(m); !fault.empty()) throw ModelError("mobility: " + fault);
+  if (const std::string fault = find_fault(stored); !fault.empty()) throw ModelError("mobility: " + fault);
   const std::string axes = "x along the track, y to the left, z up";
   const std::string band = fmt::format(
       " under a unit impulse, downward, on the footprint; unchanged up to {} Hz, "
@@ -148,6 +161,9 @@ void write_mobility(const std::filesystem::path& path, const StoredMobility& sto
                     {.units = "m/(N s)",
                      .description = "mean displacement of a footprint there" + band,
                      .frame = "downward"});
+  if (!stored.shift_methods.empty())
+    file.write_names("/neighbour/method", stored.shift_methods,
+                     "how the response of each neighbouring footprint was computed");
   for (const auto& [direction, h] : m.horizontal) {
     const std::string group = group_of(direction);
     const std::string load = fmt::format(
@@ -211,7 +227,8 @@ StoredMobility read_mobility(const std::filesystem::path& path) {
     throw InputError(fmt::format("{}: \"/response/z\" has {} rows, must have {} as \"/time\"", path.string(),
                                  m.hz.rows(), time.size()));
   }
-  if (const std::string fault = find_fault(m); !fault.empty()) {
+  if (reader.has("/neighbour/method")) stored.shift_methods = reader.read_names("/neighbour/method");
+  if (const std::string fault = find_fault(stored); !fault.empty()) {
     throw InputError(fmt::format("{}: {}", path.string(), fault));
   }
   const Eigen::VectorXd window =

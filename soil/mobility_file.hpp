@@ -18,7 +18,11 @@ struct StoredMobility {
   Mobility mobility;
   Site site;
   GroundDamping damping = GroundDamping::maxwell_body;
-  std::string method;                 ///< how the responses were computed, e.g. "layered half-space"
+  std::string method;  ///< how the responses were computed, e.g. "layered half-space"
+  /// How those of each of mobility.shifts were (layered_method, element_method); by finite elements, footprints near to each
+  /// other and far from each other have the layered half-space's. None: all by `method`, but for finite elements without
+  /// blocks in a file of an earlier version, where it is not known.
+  std::vector<std::string> shift_methods;
   std::vector<std::string> identity;  ///< describe_responses(); none in a file of an earlier version
   std::vector<Parameter> parameters;  ///< of the method: mesh, boundary, time step; rest
   double window = 0;  ///< [s] that all responses hold; the samples reach farther where far footprints need it

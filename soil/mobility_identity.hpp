@@ -14,6 +14,13 @@ namespace easydyn::soil {
 inline constexpr const char* layered_method = "layered half-space";
 inline constexpr const char* element_method = "finite elements";
 
+/// Row of the parameters that says up to which distance [m] of footprints responses by finite elements are the layered
+/// half-space's, and from which on.
+inline constexpr const char* near_footprints_row =
+    "footprints nearer to each other are by the layered half-space";
+inline constexpr const char* far_footprints_row =
+    "footprints farther away along x are by the layered half-space";
+
 /// Raised with every change of the program that changes the numbers of impulse responses, so that files written before
 /// are computed anew.
 inline constexpr int response_revision = 1;

@@ -108,7 +108,7 @@ bool SiteClm::knows_blocks() const {
 std::string SiteClm::find_mismatch(const soil::Site& site, const FootprintRow& footprints) const {
   if (revision != fit_revision)
     return fmt::format("is of revision {} of the fit, not {}", revision, fit_revision);
-  if (method != soil::layered_method && method != soil::element_method)
+  if (method != soil::layered_method && method != soil::element_method && method != mixed_method)
     return fmt::format("is of an unknown method \"{}\"", method);
   if (!has_constant_ratio(damping)) return fmt::format("has the damping \"{}\"", soil::name_of(damping));
   if (!(row == footprints)) return "belongs to other footprints";

@@ -23,7 +23,7 @@ struct SiteClm {
   std::vector<soil::Layer> layers;  ///< of the site; a file keeps neither their names nor their sources
   std::vector<soil::Block> blocks;  ///< of the site; their names are not kept either
   double damping_frequency = 0;     ///< at which they hold [Hz]
-  std::string method;               ///< of the ground's compliance, as soil::StoredMobility::method
+  std::string method;               ///< of the ground's compliance, as ComplianceOrigin::method
   soil::GroundDamping damping = soil::GroundDamping::constant_q;  ///< of the ground's compliance
   int revision = fit_revision;                                    ///< of the fit; 0: a file that names none
   FootprintRow row;

@@ -1,19 +1,38 @@
 #include "track_on_soil/site_compliance.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "easydyn/error.hpp"
 #include "easydyn/math/units.hpp"
 #include "easydyn/require.hpp"
 #include "soil/frequency_filter.hpp"
 #include "soil/layered/footprint_response.hpp"
+#include "soil/mobility_identity.hpp"
 
 namespace easydyn::track_on_soil {
 namespace {
 
 constexpr double same_place = 1e-4;  // [m]
+
+// Of the footprint n spacings away along the track.
+std::size_t find_column(const soil::StoredMobility& stored, const std::string& file, double distance) {
+  const auto& shifts = stored.mobility.shifts;
+  const auto there = std::ranges::find_if(shifts, [&](const auto& shift) {
+    return std::abs(shift[0] - distance) < same_place && shift[1] < same_place;
+  });
+  if (there == shifts.end())
+    throw InputError(fmt::format("{}: \"/neighbour/offset\" has no footprint {:g} m away along the track",
+                                 file, distance));
+  return static_cast<std::size_t>(there - shifts.begin());
+}
 
 }  // namespace
 
@@ -44,6 +63,24 @@ FootprintRow footprints_of(const soil::StoredMobility& stored, const std::string
   return {stored.mobility.length, stored.mobility.width, spacing};
 }
 
+ComplianceOrigin find_origin(const soil::StoredMobility& stored, const std::string& file, double spacing,
+                             int count) {
+  if (stored.shift_methods.empty()) {
+    if (stored.method == soil::element_method && stored.site.blocks.empty())
+      return {mixed_method, stored.method + "; those of near footprints may be of the layered half-space"};
+    return {stored.method, stored.method};
+  }
+  std::vector<std::string> layered;
+  for (int n = 0; n < count; ++n)
+    if (stored.shift_methods[find_column(stored, file, n * spacing)] == soil::layered_method)
+      layered.push_back(fmt::format("H_0{}", n));
+  if (layered.empty()) return {soil::element_method, soil::element_method};
+  if (layered.size() == static_cast<std::size_t>(count)) return {soil::layered_method, soil::layered_method};
+  const std::string which = layered.size() <= 3 ? fmt::format("{}", fmt::join(layered, ", "))
+                                                : fmt::format("{} of {}", layered.size(), count);
+  return {mixed_method, fmt::format("{}; {} {}", soil::element_method, which, soil::layered_method)};
+}
+
 track::GroundCompliance transform_mobility(const soil::StoredMobility& stored, const std::string& file,
                                            double spacing, const Eigen::VectorXd& frequencies, int count) {
   const soil::Mobility& m = stored.mobility;
@@ -51,16 +88,14 @@ track::GroundCompliance transform_mobility(const soil::StoredMobility& stored, c
   if (frequencies.size() > 0 && frequencies.maxCoeff() > limit)
     throw InputError(fmt::format("{}: frequency = {:g} Hz, must be <= {:g}, up to which the responses hold",
                                  file, frequencies.maxCoeff(), limit));
-  track::GroundCompliance compliance{frequencies, {}, spacing, fmt::format("{} ({})", file, stored.method)};
+  track::GroundCompliance compliance{
+      frequencies,
+      {},
+      spacing,
+      fmt::format("{} ({})", file, find_origin(stored, file, spacing, count).description)};
   compliance.H.resize(frequencies.size(), count);
   for (int n = 0; n < count; ++n) {
-    Eigen::Index column = -1;
-    for (std::size_t s = 0; s < m.shifts.size(); ++s)
-      if (std::abs(m.shifts[s][0] - n * spacing) < same_place && m.shifts[s][1] < same_place)
-        column = static_cast<Eigen::Index>(s);
-    if (column < 0)
-      throw InputError(fmt::format("{}: \"/neighbour/offset\" has no footprint {:g} m away along the track",
-                                   file, n * spacing));
+    const auto column = static_cast<Eigen::Index>(find_column(stored, file, n * spacing));
     for (Eigen::Index i = 0; i < frequencies.size(); ++i) {
       const double w = 2 * units::pi * frequencies[i];
       std::complex<double> sum = 0;

@@ -34,8 +34,24 @@ track::GroundCompliance compute_site_compliance(const soil::Site& site, const Fo
 /// @throws InputError naming `file` if it holds no two footprints in line
 FootprintRow footprints_of(const soil::StoredMobility& stored, const std::string& file);
 
+/// Method of compliances of which some are by finite elements and some by the layered half-space.
+inline constexpr const char* mixed_method = "finite elements and layered half-space";
+
+/// How compliances H_00 to H_0(count - 1) from impulse responses were computed.
+struct ComplianceOrigin {
+  std::string method;       ///< soil::layered_method, soil::element_method or mixed_method
+  std::string description;  ///< e.g. "finite elements; H_00 layered half-space"
+};
+
+/// By finite elements on a ground without blocks, the responses of footprints nearer to each other than an element is long
+/// are the layered half-space's, H_00 always (soil::ElementMobility).
+/// @throws InputError naming `file` if a distance n spacing is missing
+ComplianceOrigin find_origin(const soil::StoredMobility& stored, const std::string& file, double spacing,
+                             int count);
+
 /// Compliances from the impulse responses h_n between neighbouring footprints: H_0n(f) = sum_i h_n(t_i) exp(-i w t_i) dt.
 /// @param file  what messages name
+/// Their source names `file` and find_origin().
 /// @throws InputError if a distance n spacing is missing, or a frequency is above 1.25 times the highest of the file
 track::GroundCompliance transform_mobility(const soil::StoredMobility& stored, const std::string& file,
                                            double spacing, const Eigen::VectorXd& frequencies, int count);

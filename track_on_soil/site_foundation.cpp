@@ -54,11 +54,11 @@ SiteClm calibrate_on_mobility(const soil::StoredMobility& stored, const std::str
         fmt::format("{}: damping = {}, must be {} or {}: a foundation is that of a constant damping ratio",
                     file, soil::name_of(stored.damping), soil::name_of(soil::GroundDamping::maxwell_body),
                     soil::name_of(soil::GroundDamping::constant_q)));
-  return fit_to(
-      transform_mobility(stored, file, spacing, calibration_frequencies(options.lowest, options.highest),
-                         std::max(2, options.foundations)),
-      stored.site, {stored.mobility.length, stored.mobility.width, spacing}, stored.method, stored.damping,
-      options);
+  const int count = std::max(2, options.foundations);
+  return fit_to(transform_mobility(stored, file, spacing,
+                                   calibration_frequencies(options.lowest, options.highest), count),
+                stored.site, {stored.mobility.length, stored.mobility.width, spacing},
+                find_origin(stored, file, spacing, count).method, stored.damping, options);
 }
 
 FoundationOnSite find_foundation(const std::filesystem::path& site_file, const soil::Site& site,

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
 
@@ -56,6 +59,14 @@ void add_verification_section(visu::Report& report, const results::ResultReader&
   // The footprint that goes down most.
   Eigen::Index row = 0, most = 0;
   s.footprint_displacement.maxCoeff(&row, &most);
+  std::string caption =
+      "Mean over the footprint that goes down most. A model that ends is stiffer than the ground under a "
+      "slow load.";
+  const auto near = std::ranges::find(v.parameters, std::string(near_footprints_row), &Parameter::name);
+  if (near != v.parameters.end())
+    caption += fmt::format(
+        " What loads nearer than {} m do to it, its own first of all, is semi-analytical in both curves.",
+        visu::short_number_text(near->value, 3));
   charts.push_back(
       {.title = fmt::format("Footprint at x = {} m", visu::short_number_text(v.footprint_x(most), 4)),
        .x = {"time", "s"},
@@ -63,8 +74,7 @@ void add_verification_section(visu::Report& report, const results::ResultReader&
        .series = {{"finite elements", v.time, 1e3 * v.footprint_displacement.col(most)},
                   {"semi-analytical", s.time, 1e3 * s.footprint_displacement.col(most),
                    visu::Stroke::dashed}},
-       .caption = "Mean over the footprint that goes down most. A model that ends is stiffer than the "
-                  "ground under a slow load.",
+       .caption = caption,
        .height = 230});
   report.add_charts(std::move(charts));
 }

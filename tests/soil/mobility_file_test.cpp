@@ -87,6 +87,25 @@ TEST(MobilityFile, HoldsForTheWindowThatItWasComputedWith) {
   EXPECT_NE(find_shortage(read_mobility(folder / "mobility.h5"), 0.8), "");
 }
 
+TEST(MobilityFile, KnowsWhichFootprintsAreSemiAnalytical) {
+  const TemporaryFolder folder;
+  StoredMobility stored = make_stored();
+  write_mobility(folder / "mobility.h5", stored, {.program = "test"});  // of an earlier version: does not say
+  EXPECT_TRUE(read_mobility(folder / "mobility.h5").shift_methods.empty());
+  stored.method = element_method;
+  stored.shift_methods = {layered_method};
+  write_mobility(folder / "mobility.h5", stored, {.program = "test"});
+  EXPECT_EQ(read_mobility(folder / "mobility.h5").shift_methods, stored.shift_methods);
+  const auto expect_refusal = [&](const std::vector<std::string>& methods, const std::string& message) {
+    stored.shift_methods = methods;
+    EXPECT_THAT(
+        message_of<ModelError>([&] { write_mobility(folder / "mobility.h5", stored, {.program = "test"}); }),
+        ::testing::HasSubstr(message));
+  };
+  expect_refusal({layered_method, element_method}, "\"/neighbour/method\" has 2 values, must have 1");
+  expect_refusal({"guess"}, "\"/neighbour/method\" holds \"guess\", must be \"layered half-space\" or");
+}
+
 TEST(MobilityFile, IsOfTheRevisionOfTheNumbers) {
   EXPECT_THAT(describe_responses(make_stored().site, GroundDamping::none, nullptr),
               ::testing::Contains(fmt::format("revision of the responses = {}", response_revision)));

@@ -155,6 +155,7 @@ TEST(ClmFile, HoldsForAConstantDampingRatioAndThisRevisionOfTheFitOnly) {
   EXPECT_EQ(find_mismatch([](SiteClm& c) { c.damping = soil::GroundDamping::stiffness_proportional; }),
             "has the damping \"stiffness\"");
   EXPECT_THAT(find_mismatch([](SiteClm& c) { c.revision = fit_revision + 1; }), HasSubstr("of the fit, not"));
+  EXPECT_EQ(find_mismatch([](SiteClm& c) { c.method = mixed_method; }), "");
   EXPECT_THAT(find_mismatch([](SiteClm& c) { c.method = "guess"; }), HasSubstr("unknown method \"guess\""));
 }
 

@@ -6,6 +6,7 @@
 
 #include "easydyn/error.hpp"
 #include "soil/layered/layered_prediction.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/site_file.hpp"
 #include "tests/track_on_soil/small_sites.hpp"
 #include "track/clm_chain.hpp"
@@ -43,6 +44,32 @@ soil::StoredMobility mobility_of(const soil::Site& site, int count) {
   for (int i = 0; i < count; ++i)
     footprints.push_back({.x = 0.72 * i, .y = 0, .length = 0.285, .width = 2.5});
   return compute_mobility(site, footprints, soil::GroundDamping::constant_q);
+}
+
+TEST(MobilityCompliance, NamesWhatIsSemiAnalyticalAmongFiniteElements) {
+  soil::StoredMobility stored;
+  stored.method = soil::element_method;
+  for (int n = 0; n < 6; ++n) stored.mobility.shifts.push_back({0.6 * n, 0});
+  const auto find = [&](int layered, int count) {
+    stored.shift_methods.assign(6, soil::element_method);
+    for (int n = 0; n < layered; ++n) stored.shift_methods[std::size_t(n)] = soil::layered_method;
+    return find_origin(stored, "m.h5", 0.6, count);
+  };
+  EXPECT_EQ(find(0, 2).method, soil::element_method);
+  EXPECT_EQ(find(0, 2).description, "finite elements");
+  EXPECT_EQ(find(1, 2).method, mixed_method);
+  EXPECT_EQ(find(1, 2).description, "finite elements; H_00 layered half-space");
+  EXPECT_EQ(find(2, 3).description, "finite elements; H_00, H_01 layered half-space");
+  EXPECT_EQ(find(4, 6).description, "finite elements; 4 of 6 layered half-space");
+  // Sleepers closer than an element: nothing of the foundation is by finite elements.
+  EXPECT_EQ(find(2, 2).method, soil::layered_method);
+  EXPECT_EQ(find(2, 2).description, "layered half-space");
+  // A file of an earlier version does not say; with blocks all of it is by finite elements.
+  stored.shift_methods.clear();
+  EXPECT_EQ(find_origin(stored, "m.h5", 0.6, 2).method, mixed_method);
+  EXPECT_THAT(find_origin(stored, "m.h5", 0.6, 2).description, HasSubstr("near footprints may be"));
+  stored.site.blocks.emplace_back();
+  EXPECT_EQ(find_origin(stored, "m.h5", 0.6, 2).method, soil::element_method);
 }
 
 TEST(MobilityCompliance, IsThatOfTheLayers) {
