@@ -117,7 +117,7 @@ expect "the three steps succeed" is "$code" 0
 expect "only the needed targets are built" has "$log" "--target tram soil_program"
 expect "step 1 gets the site and the options" has "$log" "tram --site examples/sites/tram.toml --output results/tram --speed 40"
 expect "impulse responses, beside the site file" has "$log" "soil mobility examples/sites/tram.toml \
---loads results/tram/surface_loads.h5 --method elements --output examples/sites/tram.mobility.h5"
+--loads results/tram/surface_loads.h5 --method elements --crossover 15 --output examples/sites/tram.mobility.h5"
 expect "the first time, it says what they are for" has "$err" "once for this site (expected time below"
 expect "superposition" has "$log" "soil predict examples/sites/tram.mobility.h5 results/tram/surface_loads.h5 \
 --site examples/sites/tram.toml --output results/tram"
