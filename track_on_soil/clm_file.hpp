@@ -36,7 +36,7 @@ struct SiteClm {
 
   /// What keeps it from holding for a site, e.g. "belongs to other layers"; empty if nothing does: layers, blocks and
   /// footprints are these, the damping ratio is constant and the fit is of this revision. Neither receivers nor settings of
-  /// the solver matter; band, chain and method are a choice.
+  /// the solver matter; band, chain and method are a choice (find_foundation() asks for the infinite chain).
   std::string find_mismatch(const soil::Site& site, const FootprintRow& footprints) const;
   bool belongs_to(const soil::Site& site, const FootprintRow& footprints) const {
     return find_mismatch(site, footprints).empty();

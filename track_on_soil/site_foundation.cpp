@@ -68,7 +68,9 @@ FoundationOnSite find_foundation(const std::filesystem::path& site_file, const s
   std::string why;
   if (std::filesystem::exists(cache)) {
     FoundationOnSite found{read_clm(cache), fmt::format("taken from {}", cache_name)};
-    const std::string mismatch = found.clm.find_mismatch(site, row);
+    std::string mismatch = found.clm.find_mismatch(site, row);
+    if (mismatch.empty() && found.clm.foundations != 0)
+      mismatch = fmt::format("is fitted to a {}, not to the infinite chain", found.clm.fit.system);
     if (mismatch.empty()) return found;
     why = fmt::format(", since {} {}", cache_name, mismatch);
   }

@@ -31,8 +31,9 @@ struct FoundationOnSite {
 };
 
 /// Foundation of a track on a site: that of the file beside the site file (clm_file_of) if it belongs to this ground and
-/// these footprints (SiteClm::find_mismatch), whatever its band, chain and method; else fitted over 2 to 50 Hz to the infinite chain, each octave alike, and written there. Where it
-/// cannot be written, `origin` says so.
+/// these footprints (SiteClm::find_mismatch) and is of the infinite chain, as the foundation of a track is, whatever its
+/// band and method; else fitted to the layers over 2 to 50 Hz, each octave alike, and written there, over what was there.
+/// Where it cannot be written, `origin` says so.
 /// @throws InputError if a file cannot be read or is not what it should be, ModelError, SolverError as above
 FoundationOnSite find_foundation(const std::filesystem::path& site_file, const soil::Site& site,
                                  const FootprintRow& row);

@@ -40,9 +40,9 @@ std::string describe(const SiteOfRun& site) {
     return fmt::format("site {}: rigid ground, no foundation", site.file.filename().string());
   const track_on_soil::SiteClm& clm = site.foundation->clm;
   return fmt::format(
-      "site {}: foundation {} ({}, {:g}-{:g} Hz, rms error {:.0f} % of H_00, {:.0f} % of H_01)",
-      site.file.filename().string(), site.foundation->origin, clm.fit.system, clm.lowest, clm.highest,
-      100 * clm.fit.rms_00, 100 * clm.fit.rms_01);
+      "site {}: foundation {} ({}, {}, {:g}-{:g} Hz, rms error {:.0f} % of H_00, {:.0f} % of H_01)",
+      site.file.filename().string(), site.foundation->origin, clm.method, clm.fit.system, clm.lowest,
+      clm.highest, 100 * clm.fit.rms_00, 100 * clm.fit.rms_01);
 }
 
 std::vector<std::string> warn_of(const SiteOfRun& site) {

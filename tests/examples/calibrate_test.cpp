@@ -1,5 +1,6 @@
 // The program `calibrate` and the option --site of the programs of trains, from outside.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
@@ -296,7 +297,20 @@ TEST(SiteOfAPassage, GivesFoundationAndSpeedsAndLeavesThemInTheResults) {
             file.read_vector("/free_wave/phase_speed").size());
   EXPECT_NEAR(file.read_vector("/moving_load/critical_speed")[0], 111.1, 1.5);
 
-  EXPECT_THAT(run_train(HST_PROGRAM, command).text, HasSubstr("foundation taken from hst.clm.toml"));
+  // A band that somebody chose is taken and named; a chain that is none of a track is not.
+  const std::string calibrate =
+      CALIBRATE_PROGRAM " " + site.string() + " --output " + folder.path().string() + " --footprint " +
+      fmt::format("{} {} --spacing {}", clm.row.length, clm.row.width, clm.row.spacing);
+  ASSERT_EQ(call(calibrate + " --band 3 40").status, 0);
+  EXPECT_THAT(
+      run_train(HST_PROGRAM, command).text,
+      HasSubstr("foundation taken from hst.clm.toml (layered half-space, infinite chain, 3-40 Hz, rms"));
+  ASSERT_EQ(call(calibrate + " --foundations 2").status, 0);
+  EXPECT_THAT(
+      run_train(HST_PROGRAM, command).text,
+      HasSubstr("foundation fitted to hst.toml, since hst.clm.toml is fitted to a chain of 2, not to the "
+                "infinite chain, and written to hst.clm.toml (layered half-space, infinite chain, 2-50 "
+                "Hz, rms"));
   const Outcome rigid = run_train(HST_PROGRAM, command + " --foundation rigid");
   EXPECT_EQ(rigid.status, 0) << rigid.text;
   EXPECT_THAT(rigid.text, HasSubstr("site hst.toml: rigid ground, no foundation"));
