@@ -23,7 +23,7 @@ namespace easydyn::examples::test {
 struct TramOnItsGround {
   soil::Vibrations
       elements;  ///< `soil mobility --method elements`, `soil predict --verify`: ./run tram --verify
-  soil::Vibrations direct;   ///< `soil run`: ./run tram --direct
+  soil::Vibrations direct;   ///< `soil run --correct-time`: ./run tram --direct
   soil::Vibrations layered;  ///< `soil predict SITE`: ./run tram --layered
 };
 
@@ -56,7 +56,7 @@ inline TramOnItsGround solve_tram(const std::filesystem::path& folder, const std
   call_program(soil + " predict " + responses + " " + loads + " --site " + site + " --verify --output " + in +
                "elements");
   call_program(soil + " predict " + site + " " + loads + " --output " + in + "layered");
-  call_program(soil + " run " + site + " " + loads + " --output " + in + "direct");
+  call_program(soil + " run " + site + " " + loads + " --correct-time --output " + in + "direct");
   return {read("elements"), read("direct"), read("layered")};
 }
 
