@@ -58,9 +58,20 @@ std::optional<Comparison> compare_displacements(const ResultReader& track, const
                foundation(Eigen::all, of_track),
                soil(Eigen::all, of_soil),
                ground.read_number_attribute("highest_frequency"),
+               {},
+               {},
+               {},
                {}};
   c.error =
       compute_recoupling_error(c.soil_time, c.soil, c.track_time, c.foundation, c.taper, c.highest_frequency);
+  if (ground.has("/semi_analytical/footprint_displacement")) {
+    c.semi_analytical_time = ground.read_vector("/semi_analytical/time");
+    c.semi_analytical_soil =
+        ground.read_matrix("/semi_analytical/footprint_displacement")(Eigen::all, of_soil);
+    c.semi_analytical_error =
+        compute_recoupling_error(c.semi_analytical_time, c.semi_analytical_soil, c.track_time, c.foundation,
+                                 c.taper, c.highest_frequency);
+  }
   return c;
 }
 
@@ -74,21 +85,38 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
   report.add_paragraph(
       "Step 1 replaces the soil by a foundation under every sleeper. If that foundation were perfect, its "
       "displacement u_f would be the displacement that its reactions cause in the soil of step 2. The "
-      "difference "
-      "is the accuracy of the foundation in this very run.");
-  report.add_table(
-      {{"part", "relative L2 [%]", "relative peak [%]"},
-       {{"whole signal", percent(c.error.total.l2), percent(c.error.total.peak)},
-        {"quasi-static, below 2 Hz", percent(c.error.quasi_static.l2), percent(c.error.quasi_static.peak)},
-        {"dynamic, above 2 Hz", percent(c.error.dynamic.l2), percent(c.error.dynamic.peak)}},
-       fmt::format("Recoupling error over {} sleepers under their full load, from t = {} s to {} s",
-                   c.error.footprints, time_text(c.error.from), time_text(c.error.to))});
+      "difference is the accuracy of the foundation in this very run.");
+  visu::Table table{
+      {"part", "relative L2 [%]", "relative peak [%]"},
+      {},
+      fmt::format("Recoupling error over {} sleepers under their full load, from t = {} s to {} s",
+                  c.error.footprints, time_text(c.error.from), time_text(c.error.to))};
+  if (c.semi_analytical_error) {
+    table.header.push_back("relative L2, semi-analytical soil [%]");
+    table.header.push_back("relative peak, semi-analytical soil [%]");
+  }
+  const auto add_row = [&](const std::string& part, const RelativeDifference RecouplingError::*which) {
+    std::vector<std::string> row = {part, percent((c.error.*which).l2), percent((c.error.*which).peak)};
+    if (c.semi_analytical_error) {
+      row.push_back(percent((*c.semi_analytical_error.*which).l2));
+      row.push_back(percent((*c.semi_analytical_error.*which).peak));
+    }
+    table.rows.push_back(std::move(row));
+  };
+  add_row("whole signal", &RecouplingError::total);
+  add_row("quasi-static, below 2 Hz", &RecouplingError::quasi_static);
+  add_row("dynamic, above 2 Hz", &RecouplingError::dynamic);
+  report.add_table(std::move(table));
   report.add_paragraph(
-      "Relative to the displacement of the soil. The quasi-static part depends on how far away the soil "
-      "model "
-      "ends: a box of finite elements held by springs and dashpots stands for the ground beyond it only "
-      "roughly. Downward is positive "
-      "in the figures, and both curves end at the highest frequency of the soil model.");
+      std::string(
+          "Relative to the displacement of the soil. The quasi-static part depends on how far away the soil "
+          "model ends: a box of finite elements held by springs and dashpots stands for the ground beyond "
+          "it only roughly. ") +
+      (c.semi_analytical_error
+           ? "The semi-analytical soil, a layered half-space under the same loads, does not end: of the "
+             "quasi-static part, believe its figure. "
+           : "") +
+      "Downward is positive in the figures, and all curves end at the highest frequency of the soil model.");
 
   // four sleepers, evenly spread over those under their full load
   std::vector<Index> full;
@@ -108,6 +136,9 @@ void add_recoupling_section(visu::Report& report, const Comparison& c) {
          .series = {{"soil, mean over the footprint (step 2)", c.soil_time, 1e3 * c.soil.col(j)},
                     {"foundation u_f (step 1)", c.track_time, 1e3 * foundation.col(j), visu::Stroke::dashed}},
          .height = 230});
+    if (c.semi_analytical_error)
+      charts.back().series.push_back(
+          {"semi-analytical soil", c.semi_analytical_time, 1e3 * c.semi_analytical_soil.col(j)});
   }
   report.add_charts(std::move(charts));
 }

@@ -41,6 +41,10 @@ struct Comparison {
   Eigen::MatrixXd foundation, soil;       ///< downward displacement, one column per footprint [m]
   double highest_frequency = 0;           ///< of the soil model [Hz]
   RecouplingError error;
+  /// The same with the layered half-space in the place of the soil model, if the file holds it (--verify).
+  std::optional<RecouplingError> semi_analytical_error;
+  Eigen::VectorXd semi_analytical_time;  ///< [s]
+  Eigen::MatrixXd semi_analytical_soil;  ///< as `soil`
 };
 
 /// Nothing if the files do not hold both displacements (a track on rigid ground).

@@ -52,6 +52,25 @@ TEST_F(PredictionReport, ShowsTheVehicleTheRailAndTheLossesOfContact) {
     EXPECT_THAT(page, HasSubstr(text));
 }
 
+TEST_F(PredictionReport, QuotesTheRecouplingErrorWithTheSemiAnalyticalSoilToo) {
+  const auto errors = [&](bool has_semi_analytical) {  // of the quasi-static part: cells after its name
+    write_synthetic_results(folder_.path(), has_semi_analytical);
+    const std::string page = write();
+    EXPECT_EQ(page.find("relative L2, semi-analytical soil [%]") != page.npos, has_semi_analytical);
+    std::size_t at = page.find("quasi-static, below 2 Hz</td>");
+    const std::string row = page.substr(at, page.find("</tr>", at) - at);
+    std::vector<double> cells;
+    for (at = 0; (at = row.find("<td", at)) != row.npos; ++at)
+      cells.push_back(std::stod(row.substr(row.find('>', at) + 1)));
+    return cells;
+  };
+  const std::vector<double> both = errors(true);
+  EXPECT_EQ(errors(false).size(), 2u);
+  ASSERT_EQ(both.size(), 4u);
+  EXPECT_NEAR(both[0], 8.7, 0.1);  // 1 / 0.92 - 1 = 8.7 %
+  EXPECT_LT(both[2], 0.1);
+}
+
 TEST_F(PredictionReport, HoldsOneStepIfThereIsOne) {
   write_synthetic_results(folder_.path());
   std::filesystem::remove(folder_ / "vibrations.h5");

@@ -213,7 +213,7 @@ void write_track(const std::filesystem::path& path, const Passage& p) {
   file.commit();
 }
 
-void write_ground(const std::filesystem::path& path, const Passage& p) {
+void write_ground(const std::filesystem::path& path, const Passage& p, bool has_semi_analytical) {
   const std::vector<double> distances = {2, 4, 8, 12, 16, 24, 32};
   const Index nr = Index(distances.size());
   const VectorXd time = VectorXd::LinSpaced(2001, 0, 8);
@@ -251,10 +251,11 @@ void write_ground(const std::filesystem::path& path, const Passage& p) {
                       : ppv(r, 2) / 5 * (std::exp(-octaves * octaves) + 0.02 / (1 + 0.05 * centre(f)));
     }
   }
-  MatrixXd soil(time.size(), p.sleepers.size() - 20);
+  MatrixXd soil(time.size(), p.sleepers.size() - 20), semi_analytical = soil;
   for (Index i = 0; i < soil.rows(); ++i) {
     const Index row = std::min<Index>(p.time.size() - 1, Index(std::lround(time(i) / step)));
-    soil.row(i) = 0.92 * p.foundation.row(row).middleCols(10, soil.cols());
+    semi_analytical.row(i) = p.foundation.row(row).middleCols(10, soil.cols());
+    soil.row(i) = 0.92 * semi_analytical.row(i);
     if (i > 0) soil.row(i) = 0.85 * soil.row(i) + 0.15 * soil.row(i - 1);
   }
   VectorXd taper = VectorXd::Ones(soil.cols());
@@ -278,6 +279,13 @@ void write_ground(const std::filesystem::path& path, const Passage& p) {
   file.write_vector("/footprint/x", p.sleepers.segment(10, soil.cols()), {"m", "footprints", "x"});
   file.write_matrix("/footprint/displacement", soil, {"m", "mean displacement", "downward"});
   file.write_vector("/footprint/taper", taper, {"1", "taper", "-"});
+  if (has_semi_analytical) {
+    file.write_vector("/semi_analytical/time", time, {"s", "time", "-"});
+    for (const auto& [axis, v] : {std::pair("x", &x), {"y", &y}, {"z", &z}})
+      file.write_matrix(fmt::format("/semi_analytical/velocity/{}", axis), *v, {"m/s", "velocity", axis});
+    file.write_matrix("/semi_analytical/footprint_displacement", semi_analytical,
+                      {"m", "mean displacement", "downward"});
+  }
   file.write_text("/parameters",
                   visu::to_json({{"Layer 1", "shear wave speed", 150, "m/s", "made up"},
                                  {"Layer 1", "density", 1800, "kg/m3", "made up"},
@@ -289,10 +297,10 @@ void write_ground(const std::filesystem::path& path, const Passage& p) {
 
 }  // namespace
 
-void write_synthetic_results(const std::filesystem::path& folder) {
+void write_synthetic_results(const std::filesystem::path& folder, bool has_semi_analytical) {
   const Passage passage;
   write_track(folder / "results.h5", passage);
-  write_ground(folder / "vibrations.h5", passage);
+  write_ground(folder / "vibrations.h5", passage, has_semi_analytical);
 }
 
 }  // namespace easydyn::testing
