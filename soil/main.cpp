@@ -19,6 +19,7 @@
 #include "soil/layered/layered_prediction.hpp"
 #include "soil/parallel_run.hpp"
 #include "soil/prediction.hpp"
+#include "soil/report/comparison_report.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "soil/site_file.hpp"
 #include "soil/toml_table.hpp"
@@ -54,11 +55,13 @@ Exit status: 0 done, 1 an error in the files or the computation, 2 wrong options
 (Ctrl-C) or SIGTERM.)";
 
 const char* const report_footer = R"(
-Example:
+Examples:
   soil report results/tram
+  soil report results/plain results/trench --output trench.html
 
-Reads results.h5 (the train and the track, if there is one) and vibrations.h5 (the ground) from the folder and
-writes report.html beside them: one page that opens without a network.)";
+One folder: reads results.h5 (the train and the track, if there is one) and vibrations.h5 (the ground) and writes
+report.html beside them. Several: compares their vibrations.h5 at the receivers that they have in common, with the first
+one as the reference, and writes comparison.html into the current folder. Each is one page that opens without a network.)";
 
 struct RunArguments {
   fs::path site, output;
@@ -214,15 +217,33 @@ void run(RunArguments& arguments, const std::string& command_line, Ranks* ranks)
   fmt::print("\n{}\n", result.string());
 }
 
-void add_report_command(CLI::App& app, fs::path& folder) {
-  CLI::App& command = *app.add_subcommand("report", "One page on the results in a folder");
+struct ReportArguments {
+  std::vector<fs::path> folders;
+  fs::path output;
+};
+
+void add_report_command(CLI::App& app, ReportArguments& report) {
+  CLI::App& command =
+      *app.add_subcommand("report", "One page on the results in a folder, or a comparison of several");
   command.footer(report_footer);
-  command.add_option("DIR", folder, "Folder of the results")->required()->type_name("");
+  command.add_option("DIR", report.folders, "Folders of the results")->required()->type_name("");
+  command
+      .add_option("-o,--output", report.output,
+                  "The page; else report.html in the folder, or comparison.html here for several")
+      ->type_name("FILE");
 }
 
-void write_report(const fs::path& folder) {
-  write_prediction_report(folder, folder / "report.html");
-  fmt::print("{}\n", (folder / "report.html").string());
+void write_report(const ReportArguments& report) {
+  const bool is_one = report.folders.size() == 1;
+  const fs::path page = !report.output.empty() ? report.output
+                        : is_one               ? report.folders.front() / "report.html"
+                                               : "comparison.html";
+  if (is_one) {
+    write_prediction_report(report.folders.front(), page);
+  } else {
+    write_comparison_report(report.folders, page);
+  }
+  fmt::print("{}\n", page.string());
 }
 
 // Empty if the first word may be a command.
@@ -252,10 +273,10 @@ int run_program(int argc, char** argv, ParallelRun& parallel) {
       "results/tram\n\n"
       "`soil run --help` says what the files hold.");
   RunArguments arguments;
-  fs::path report_folder;
+  ReportArguments report;
   add_run_command(app, arguments);
   const Action mobility = add_mobility_command(app), predict = add_predict_command(app);
-  add_report_command(app, report_folder);
+  add_report_command(app, report);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -271,7 +292,7 @@ int run_program(int argc, char** argv, ParallelRun& parallel) {
       throw InputError("only soil run shares its work among ranks: start this command without mpirun");
     if (app.got_subcommand("mobility")) return mobility(command_line);
     if (app.got_subcommand("predict")) return predict(command_line);
-    write_report(report_folder);
+    write_report(report);
     return 0;
   } catch (const std::exception& error) {
     parallel.fail(fmt::format("soil: {}\n", error.what()));

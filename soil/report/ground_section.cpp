@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <utility>
 
+#include "soil/report/receivers.hpp"
 #include "soil/report/sections.hpp"
 #include "soil/report/text.hpp"
 
@@ -18,53 +18,12 @@ using Eigen::VectorXd;
 using results::ResultReader;
 
 constexpr Index most_curves = 6;
-constexpr Index most_rows = 24;  // of receivers, before lines and grids are told by curves
-
-struct Receivers {
-  MatrixXd position;  ///< n x 3 [m]
-  std::vector<std::string> names, groups;
-  VectorXd distance;        ///< from the axis of the track [m]
-  std::vector<Index> near;  ///< indices, nearest first; of many, those that belong to no line or grid and the
-                            ///< first and the last one of each line or grid
-
-  Index count() const { return position.rows(); }
-  /// Of one line or grid, in their order.
-  std::vector<Index> members(const std::string& group) const {
-    std::vector<Index> indices;
-    for (Index i = 0; i < count(); ++i)
-      if (groups[size_t(i)] == group) indices.push_back(i);
-    return indices;
-  }
-  std::vector<std::string> group_names() const {
-    std::vector<std::string> all;
-    for (const std::string& group : groups)
-      if (!group.empty() && (all.empty() || all.back() != group)) all.push_back(group);
-    return all;
-  }
-  std::string label(Index i) const { return name_of(names, i, "receiver"); }
-};
 
 Receivers read_receivers(const ResultReader& ground) {
-  Receivers r;
-  r.position = ground.read_matrix("/receivers/position");
-  r.names = ground.read_names("/receivers/names");
-  r.distance = r.position.col(1).cwiseAbs();
-  if (ground.has("/receivers/groups")) r.groups = ground.read_names("/receivers/groups");
-  r.groups.resize(size_t(r.count()));
-  if (r.count() <= most_rows) {
-    r.near.resize(size_t(r.count()));
-    std::iota(r.near.begin(), r.near.end(), Index(0));
-  } else {
-    r.near = r.members("");
-    for (const std::string& group : r.group_names()) {
-      const std::vector<Index> members = r.members(group);
-      r.near.push_back(members.front());
-      if (members.size() > 1) r.near.push_back(members.back());
-    }
-  }
-  std::stable_sort(r.near.begin(), r.near.end(),
-                   [&](Index a, Index b) { return r.distance(a) < r.distance(b); });
-  return r;
+  std::vector<std::string> groups;
+  if (ground.has("/receivers/groups")) groups = ground.read_names("/receivers/groups");
+  return {ground.read_matrix("/receivers/position"), ground.read_names("/receivers/names"),
+          std::move(groups)};
 }
 
 std::vector<Index> chosen(const Receivers& receivers) {
@@ -94,19 +53,11 @@ void add_velocities(visu::Report& report, const ResultReader& ground, const Rece
          .series = {{"z, vertical", time, z.col(i)},
                     {"x, along the track", time, x.col(i)},
                     {"y, across", time, y.col(i)}},
-         .caption = fmt::format("At x = {} m, y = {} m, z = {} m; the scales differ between receivers.",
-                                visu::short_number_text(receivers.position(i, 0)),
-                                visu::short_number_text(receivers.position(i, 1)),
-                                visu::short_number_text(receivers.position(i, 2))),
+         .caption = fmt::format("At {}; the scales differ between receivers.", receivers.place(i)),
          .height = 230});
   report.add_charts(std::move(charts));
   const std::string remark = remark_on_choice(receivers, shown.size());
   if (!remark.empty()) report.add_paragraph("Shown are" + remark);
-}
-
-double level(double velocity) {
-  return velocity > 0 ? 20 * std::log10(velocity / level_reference)
-                      : std::numeric_limits<double>::quiet_NaN();
 }
 
 void add_spectra(visu::Report& report, const ResultReader& ground, const Receivers& receivers) {
@@ -118,17 +69,14 @@ void add_spectra(visu::Report& report, const ResultReader& ground, const Receive
   rms.conservativeResize(rms.rows(), known);
   report.add_subsection("One-third octave spectra");
   visu::Chart chart{.title = "Vertical velocity in one-third octave bands",
-                    .x = {.label = "one-third octave band centre",
-                          .unit = "Hz",
-                          .scale = visu::Scale::logarithmic,
-                          .ticks = {1, 2, 4, 8, 16, 31.5, 63}},
+                    .x = third_octave_axis(),
                     .y = {"velocity level", "dB re 5·10\u207b\u2078 m/s"},
                     .series = {},
                     .height = 340};
   const auto shown = chosen(receivers);
   for (const Index i : shown)
     chart.series.push_back(
-        {receivers.label(i), centre, rms.row(i).transpose().unaryExpr(&level), visu::Stroke::steps});
+        {receivers.label(i), centre, rms.row(i).transpose().unaryExpr(&compute_level), visu::Stroke::steps});
   chart.caption = fmt::format(
       "Rms of v_z over the whole record in each band, as a level re 5·10\u207b\u2078 m/s. Bands that reach "
       "beyond {} Hz "

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "easydyn/visu/report.hpp"
+#include "soil/report/comparison_report.hpp"
 #include "soil/report/prediction_report.hpp"
 #include "tests/browser/synthetic_results.hpp"
 #include "tests/temporary_folder.hpp"
@@ -90,6 +91,18 @@ TEST_F(Browser, DrawsThePredictionReportAndAsksForNothing) {
   expect_complete(seen);
   EXPECT_THAT(seen.root, HasSubstr("data-animations=\"1\""));
   EXPECT_THAT(seen.body, HasSubstr("deflections × 200"));
+  EXPECT_THAT(seen.root, Not(HasSubstr("data-charts=\"0\"")));
+}
+
+TEST_F(Browser, DrawsAComparisonOfResults) {
+  for (const char* name : {"plain", "trench"}) {
+    std::filesystem::create_directory(folder_ / name);
+    write_synthetic_results(folder_ / name);
+  }
+  soil::write_comparison_report({folder_ / "plain", folder_ / "trench"}, folder_ / "comparison.html");
+  EXPECT_LT(std::filesystem::file_size(folder_ / "comparison.html"), 5'000'000u);
+  const Visit seen = visit(folder_ / "comparison.html", folder_.path());
+  expect_complete(seen);
   EXPECT_THAT(seen.root, Not(HasSubstr("data-charts=\"0\"")));
 }
 

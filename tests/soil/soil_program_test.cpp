@@ -365,6 +365,52 @@ TEST_F(SoilProgram, DrawsALineOfReceiversAsACurve) {
   EXPECT_THAT(page, Not(HasSubstr("row (0, 10, 0)")));
 }
 
+TEST_F(SoilProgram, ComparesSeveralResultsOnOnePage) {
+  folder_.write("site.toml", tiny_site);
+  std::string other_site = tiny_site;
+  other_site.replace(other_site.find("distance = 20"), 13, "distance = 30");
+  folder_.write("other.toml", other_site);
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  ASSERT_EQ(
+      call("predict " + path("site.toml") + " " + path("loads.h5") + " --output " + path("a/out")).status, 0);
+  const std::string twice = path("loads.h5") + " " + path("loads.h5");
+  ASSERT_EQ(call("predict " + path("other.toml") + " " + twice + " --output " + path("b/out")).status, 0);
+  const std::string both = path("a/out") + " " + path("b/out");
+
+  const Outcome named = call("report " + both + " --output " + path("page.html"));
+  ASSERT_EQ(named.status, 0) << named.err;
+  EXPECT_EQ(named.out, path("page.html") + "\n");
+  const std::string page = testing::read_whole_file(folder_ / "page.html");
+  for (const char* part : {"a/out \u00b7 b/out", "Insertion loss, b/out against a/out",
+                           "Vertical velocity at 10 m", ">+6.0<", "layered half-space", "</html>"}) {
+    EXPECT_THAT(page, HasSubstr(part));
+  }
+  EXPECT_THAT(page, Not(HasSubstr("Vertical velocity at 20 m")));  // in one of them only
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "a/out/report.html"));
+  const std::string here =
+      "cd " + folder_.path().string() + " && " + SOIL_PROGRAM + " report a/out b/out >log";
+  EXPECT_EQ(std::system(here.c_str()), 0);
+  EXPECT_EQ(testing::read_whole_file(folder_ / "log"), "comparison.html\n");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "comparison.html"));
+
+  // One folder: its report, where it has always been or under another name.
+  EXPECT_EQ(call("report " + path("a/out")).out, path("a/out/report.html") + "\n");
+  EXPECT_EQ(call("report " + path("a/out") + " -o " + path("one.html")).out, path("one.html") + "\n");
+  EXPECT_THAT(testing::read_whole_file(folder_ / "one.html"), HasSubstr("Ground vibration: prediction"));
+
+  std::filesystem::remove(folder_ / "page.html");
+  const auto expect_no_page = [&](const std::string& folders, const std::string& message) {
+    expect_refused(call("report " + folders + " --output " + path("page.html")), message);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "page.html"));
+  };
+  expect_no_page(path("a/out") + " " + path("a"), "/a: holds no vibrations.h5");
+  expect_no_page(path("a/out") + " " + path("a/out"), "a/out: given twice");
+  other_site.replace(other_site.find("distance = 10"), 13, "distance = 15");
+  folder_.write("other.toml", other_site);
+  ASSERT_EQ(call("predict " + path("other.toml") + " " + twice + " --output " + path("b/out")).status, 0);
+  expect_no_page(both, "no two results have a receiver in common");
+}
+
 TEST_F(SoilProgram, WritesSnapshotsAndAnnouncesThem) {
   const std::string site = tiny_site + "[[snapshot]]\nz = 0\nstep = 0.1\n[[snapshot]]\nx = 1\nstep = 0.1\n";
   const Outcome announced = run(site, "--dry-run");
