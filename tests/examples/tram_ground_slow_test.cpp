@@ -30,6 +30,8 @@ TEST(TramOnItsGround, MovesItAlikeInThreeWaysUpTo80Hz) {
   soil::test::record_verification("tram-kb", 100 * std::max({elements.kb, direct.kb, both.kb}));
   soil::test::record_verification("tram-octaves", std::max({elements.octaves, direct.octaves, both.octaves}));
   for (const test::TramDifferences& d : {elements, direct, both}) test::expect_alike(d);
+  // The same elements and the time error taken from both: 0.64 % at 2 m, 0.1 % from 4 m on.
+  EXPECT_LT(both.whole, 0.01);
 }
 
 }  // namespace

@@ -8,7 +8,8 @@ namespace {
 
 // Shortened to be quick: 100 instead of 30 km/h, 9 instead of 14 m on each side of the joint and half of the train; up to
 // 30 Hz, where an element is 2.7 m long, and therefore without the receiver at 2 m, 0.75 m from the sleepers' ends (6 % there
-// in both finite element solutions, which differ by 0.9 %: elements do not resolve the near field of a smaller load).
+// by superposition, 8 % by the direct run, 2 % between them: elements do not resolve the near field of a smaller load).
+// Measured at 4 and 8 m: 0.8 and 1.2 %, the direct run 1.0 and 1.2 %, 0.5 % between them; all peaks 0.4 %.
 TEST(TramOnItsGround, MovesItAlikeInThreeWaysUpTo30Hz) {
   const easydyn::testing::TemporaryFolder folder;
   std::string site = easydyn::testing::read_whole_file(std::filesystem::path(EASYDYN_SITES) / "tram.toml");
@@ -26,7 +27,9 @@ TEST(TramOnItsGround, MovesItAlikeInThreeWaysUpTo30Hz) {
   test::expect_verified_alike(tram);
   test::expect_alike(test::compare("elements, layered", tram.elements, tram.layered));
   test::expect_alike(test::compare("direct, layered", tram.direct, tram.layered));
-  test::expect_alike(test::compare("elements, direct", tram.elements, tram.direct));
+  const test::TramDifferences both = test::compare("elements, direct", tram.elements, tram.direct);
+  test::expect_alike(both);
+  EXPECT_LT(both.whole, 0.01);  // the same elements and the time error taken from both
 }
 
 }  // namespace

@@ -77,7 +77,7 @@ TEST(ElementMobility, AgreesWithTheLayeredHalfSpace) {
   EXPECT_LT(compare(m.hy, layered.hy, m.step, 40), 0.03);
   EXPECT_LT(compare(m.hz, layered.hz, m.step, 40), 0.03);
   // The loaded footprint and the one 1.2 m away have the layered half-space's response by construction: 1 m on elements of
-  // 2.7 m that only resolve the waves would be too stiff by 5.5 %. Those 10.8 and 12 m away are by finite elements.
+  // 2.7 m that only resolve the waves would be too stiff by 5.5 %. Those 10.8 and 12 m away are by finite elements: 1.3 %.
   ASSERT_EQ(stored.shift_methods.size(), m.shifts.size());
   std::vector<double> by_elements;
   for (std::size_t s = 0; s < m.shifts.size(); ++s) {
