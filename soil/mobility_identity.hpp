@@ -23,7 +23,7 @@ inline constexpr const char* far_footprints_row =
 
 /// Raised with every change of the program that changes the numbers of impulse responses, so that files written before
 /// are computed anew.
-inline constexpr int response_revision = 1;
+inline constexpr int response_revision = 2;
 
 /// What stands for the ground in impulse responses, a line for each value, e.g. "layer 1: cs = 109 m/s": layers, blocks,
 /// highest frequency and that of the damping. Names, sources, receivers and loads do not count.

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 const char* const footer = R"(
 Examples:
-  soil predict results/tram/mobility.h5 results/tram/surface_loads.h5 --output results/tram
+  soil predict examples/sites/tram.mobility.h5 results/tram/surface_loads.h5 --output results/tram
   soil predict examples/sites/tram.toml results/tram/surface_loads.h5 --output results/tram
 
 GROUND is a file of `soil mobility`, or a site file (.toml): its layered half-space is then solved first, which takes

@@ -6,6 +6,7 @@
 
 #include "easydyn/results/provenance.hpp"
 #include "soil/checksum.hpp"
+#include "soil/mobility_identity.hpp"
 #include "soil/simd.hpp"
 #include "soil/wave_solver.hpp"
 
@@ -69,6 +70,7 @@ RunIdentity describe_run(const Site& site, const SurfaceLoads& loads, const Solv
   const auto yes = [](bool value) { return value ? "yes" : "no"; };
   const auto number = [](double value) { return fmt::format("{}", value); };
   return {{"version of the program", results::library_version()},
+          {"revision of the responses", number(response_revision)},
           {"width of the vector registers [byte]", number(simd_bytes)},
           {"site", checksum_of(site)},
           {"surface loads", checksum_of(loads)},

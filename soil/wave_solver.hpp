@@ -21,7 +21,7 @@ enum class DampingModel {
   none,
   stiffness_proportional,  ///< K (u + beta v), beta = damping / (pi f): ratio grows with frequency, small
                            ///< step
-  constant_ratio  ///< memory variables: ratio nearly constant from a tenth of the highest frequency to
+  constant_ratio  ///< memory variables: ratio nearly constant from a fortieth of the highest frequency to
                   ///< it, step nearly as undamped; cs and cp hold at damping_frequency (relaxation.hpp)
 };
 

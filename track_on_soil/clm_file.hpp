@@ -12,7 +12,7 @@
 namespace easydyn::track_on_soil {
 
 /// Revision of the fit: to be raised with any change that alters its numbers, so that stored ones are fitted anew.
-inline constexpr int fit_revision = 1;
+inline constexpr int fit_revision = 2;
 
 /// Whether a foundation can be fitted to impulse responses with this damping: only where the damping ratio of the ground is the
 /// site's, nearly or quite, at all frequencies.

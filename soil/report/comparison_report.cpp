@@ -544,7 +544,7 @@ std::vector<std::string> make_labels(const std::vector<fs::path>& folders) {
           std::mismatch(own.begin(), own.end(), other.begin(), other.end()).first - own.begin();
       depth = std::max(depth, size_t(shared) + 1);
     }
-    std::string label = own.front();
+    std::string label = own.empty() ? "/" : own.front();
     for (std::size_t i = 1; i < std::min(depth, own.size()); ++i) label.insert(0, own[i] + "/");
     labels.push_back(std::move(label));
   }

@@ -100,7 +100,8 @@ std::string damping_text(const ResultReader& ground) {
     return fmt::format(
         "material damping keeps the ratios of the site file at all frequencies; wave speeds hold at {}", at);
   return fmt::format(
-      "material damping nearly keeps the ratios of the site file, from a tenth of the highest frequency to "
+      "material damping nearly keeps the ratios of the site file, from a fortieth of the highest frequency "
+      "to "
       "it; "
       "ratios and wave speeds hold at {}",
       at);

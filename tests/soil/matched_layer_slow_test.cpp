@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "soil/matched_layer_limits.hpp"
 #include "soil/rheology.hpp"
@@ -58,7 +57,7 @@ double largest_velocity(const WaveEngine<T>& engine) {
 }
 
 /// Ground and damping ratio.
-class HeldLoad : public testing::TestWithParam<std::tuple<int, double>> {};
+class HeldLoad : public testing::TestWithParam<int> {};  // twice the ground; one more: damped
 
 /// 10 kN, brought in within 0.2 s and held, on a node of a quarter model.
 template <class T>
@@ -116,14 +115,14 @@ void expect_decay(const Ground& ground, double damping) {
 }
 
 TEST_P(HeldLoad, DoesNotGrowInAMatchedLayer) {
-  const auto [number, damping] = GetParam();
+  const int number = GetParam() / 2;
+  const double damping = GetParam() % 2 == 0 ? 0.0 : 0.03;
   const Ground ground = make_grounds()[static_cast<std::size_t>(number)];
   expect_decay<float>(ground, damping);
   expect_decay<double>(ground, damping);
 }
 
-INSTANTIATE_TEST_SUITE_P(OnSevenGrounds, HeldLoad,
-                         testing::Combine(testing::Range(0, 7), testing::Values(0.0, 0.03)));
+INSTANTIATE_TEST_SUITE_P(OnSevenGrounds, HeldLoad, testing::Range(0, 14));
 
 }  // namespace
 }  // namespace easydyn::soil

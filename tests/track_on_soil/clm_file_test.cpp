@@ -1,5 +1,6 @@
 #include "track_on_soil/clm_file.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -212,7 +213,7 @@ TEST(ClmFile, IsRefusedWhereItIsNotWhatItShouldBe) {
   expect_refusal("format = 2", "format = 3", "format = 3, must be");
   expect_refusal("damping = \"constant\"", "damping = \"some\"",
                  "damping = some, must be none, stiffness, constant");
-  expect_refusal("revision = 1", "revision = -1", "revision = -1, must be");
+  expect_refusal(fmt::format("revision = {}", fit_revision), "revision = -1", "revision = -1, must be");
   expect_refusal("d_c = -107000", "d_c = -108000",
                  "site.clm.toml: not passive: d_f + 4 d_c = 428000 + 4 x -108000");
   expect_refusal("d_f = 428000", "df = 428000", "unknown key \"df\"");
