@@ -13,6 +13,7 @@
 #include "easydyn/error.hpp"
 #include "easydyn/visu/parameter_json.hpp"
 #include "easydyn/visu/report.hpp"
+#include "soil/report/comparison.hpp"
 #include "soil/report/receivers.hpp"
 #include "soil/report/text.hpp"
 #include "soil/third_octave.hpp"
@@ -27,10 +28,11 @@ namespace fs = std::filesystem;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using report::Comparison;
 using report::number_text;
+using report::Places;
+using report::Result;
 
-constexpr double same_place = 1e-3;   // [m]
-constexpr double weakest_level = 60;  // [dB] below the strongest band: rounding and noise of a record
 constexpr Index most_curves = 6;
 constexpr std::size_t most_open_rows = 30;
 constexpr const char* dash = "\u2013";  // no motion, or not known
@@ -39,170 +41,9 @@ constexpr const char* dash = "\u2013";  // no motion, or not known
 constexpr const char* colours[] = {"#4477aa", "#ee6677", "#228833", "#aa3377",
                                    "#ccbb44", "#66ccee", "#555555"};
 
-struct Result {
-  std::string label, colour;
-  fs::path folder;
-  std::string program, created, command, description;
-  Vibrations vibrations;
-  std::vector<Parameter> parameters;  // of step 1, if its file is there, and of the ground
-
-  double step() const {
-    const VectorXd& t = vibrations.time;
-    return (t(t.size() - 1) - t(0)) / static_cast<double>(t.size() - 1);
-  }
-  double duration() const { return step() * static_cast<double>(vibrations.time.size()); }  // [s]
-};
-
-/// Receivers that at least two results have.
-struct Places {
-  report::Receivers receivers;
-  std::vector<std::vector<Index>> column;  // of every place: its receiver in each result, -1: none
-
-  /// The result that the others are compared with.
-  std::size_t reference(Index place) const {
-    const std::vector<Index>& c = column[size_t(place)];
-    return size_t(std::find_if(c.begin(), c.end(), [](Index i) { return i >= 0; }) - c.begin());
-  }
-  bool has(Index place, std::size_t result) const { return column[size_t(place)][result] >= 0; }
-};
-
-std::vector<Parameter> read_parameters(const results::ResultReader& file) {
-  if (!file.has("/parameters")) return {};
-  return visu::parameters_from_json(file.read_text("/parameters"), file.path().string() + ":/parameters");
+std::string find_colour(std::size_t result) {
+  return colours[result % std::size(colours)];
 }
-
-Result read_result(const fs::path& folder, const std::string& label, std::size_t index) {
-  const fs::path file = folder / "vibrations.h5";
-  if (!fs::is_directory(folder)) throw InputError(fmt::format("{}: no such folder", folder.string()));
-  if (!fs::exists(file))
-    throw InputError(fmt::format("{}: holds no vibrations.h5, which a comparison needs", folder.string()));
-  const results::ResultReader reader(file);
-  Result result{.label = label,
-                .colour = colours[index % std::size(colours)],
-                .folder = folder,
-                .program = fmt::format("{} {}", reader.read_text_attribute("program"),
-                                       reader.read_text_attribute("version")),
-                .created = reader.read_text_attribute("created"),
-                .command = reader.read_text_attribute("command"),
-                .description = {},
-                .vibrations = read_vibrations(file),
-                .parameters = {}};
-  if (result.vibrations.time.size() < 2)
-    throw InputError(
-        fmt::format("{}:/time: {} value, must be at least 2", file.string(), result.vibrations.time.size()));
-  if (const fs::path track = folder / "results.h5"; fs::exists(track)) {
-    const results::ResultReader step_1(track);
-    result.parameters = read_parameters(step_1);
-    if (step_1.has("/description")) result.description = step_1.read_text("/description");
-  }
-  result.parameters.insert(result.parameters.end(), result.vibrations.parameters.begin(),
-                           result.vibrations.parameters.end());
-  return result;
-}
-
-std::string list_positions(const Result& result) {
-  constexpr std::size_t most = 6;
-  const std::vector<Receiver>& receivers = result.vibrations.receivers;
-  if (receivers.empty()) return "none";
-  std::string text;
-  for (std::size_t r = 0; r < std::min(most, receivers.size()); ++r) {
-    const auto& p = receivers[r].position;
-    text += fmt::format("{}({:.6g}, {:.6g}, {:.6g})", r == 0 ? "" : ", ", p[0], p[1], p[2]);
-  }
-  if (receivers.size() > most) text += fmt::format(" and {} more", receivers.size() - most);
-  return text;
-}
-
-/// @throws InputError if there is none
-Places find_common_places(const std::vector<Result>& results) {
-  struct Place {
-    Receiver receiver;
-    std::vector<Index> column;
-  };
-  std::vector<Place> all;
-  for (std::size_t n = 0; n < results.size(); ++n) {
-    const std::vector<Receiver>& receivers = results[n].vibrations.receivers;
-    for (std::size_t r = 0; r < receivers.size(); ++r) {
-      const auto is_here = [&](const Place& place) {
-        for (std::size_t c = 0; c < 3; ++c)
-          if (!(std::abs(place.receiver.position[c] - receivers[r].position[c]) <= same_place)) return false;
-        return true;
-      };
-      auto at = std::find_if(all.begin(), all.end(), is_here);
-      if (at == all.end()) at = all.insert(all.end(), {receivers[r], std::vector<Index>(results.size(), -1)});
-      if (at->column[n] < 0)
-        at->column[n] = Index(r);  // a single receiver and a point of a line may coincide
-    }
-  }
-  std::erase_if(all, [](const Place& place) {
-    return std::count_if(place.column.begin(), place.column.end(), [](Index c) { return c >= 0; }) < 2;
-  });
-  if (all.empty()) {
-    std::string text;
-    for (const Result& result : results)
-      text += fmt::format("; {}: {}", result.folder.string(), list_positions(result));
-    throw InputError("no two results have a receiver in common (within 1 mm); receivers [m]" + text);
-  }
-  MatrixXd position(Index(all.size()), 3);
-  std::vector<std::string> names, groups;
-  std::vector<std::vector<Index>> column;
-  for (const Place& place : all) {
-    position.row(Index(names.size())) = Eigen::RowVector3d::Map(place.receiver.position.data());
-    names.push_back(place.receiver.name);
-    groups.push_back(place.receiver.group);
-    column.push_back(place.column);
-  }
-  return {report::Receivers(std::move(position), std::move(names), std::move(groups)), std::move(column)};
-}
-
-/// The results at one place, against the first that has it.
-class Comparison {
- public:
-  Comparison(const std::vector<Result>& results, const Places& places) : results_(results), places_(places) {
-    const VectorXd all = third_octave_centres();
-    Index known = 1;
-    for (const Result& result : results)
-      for (const Indicators& i : result.vibrations.indicators)
-        for (Index b = known; b < all.size(); ++b)
-          if (!std::isnan(i.third_octave_rms(b))) known = b + 1;
-    centres_ = all.head(known);
-  }
-
-  const std::vector<Result>& results() const { return results_; }
-  const Places& places() const { return places_; }
-  const VectorXd& centres() const { return centres_; }  ///< of the bands that a result knows [Hz]
-
-  const Indicators& indicators(Index place, std::size_t result) const {
-    return results_[result].vibrations.indicators[size_t(places_.column[size_t(place)][result])];
-  }
-  VectorXd velocity(Index place, std::size_t result) const {  ///< v_z [mm/s]
-    return 1e3 * results_[result].vibrations.vz.col(places_.column[size_t(place)][result]);
-  }
-  /// Levels of v_z in the bands [dB], as if every record had the length of the first result's.
-  VectorXd levels(Index place, std::size_t result) const {
-    const double factor = std::sqrt(results_[result].duration() / results_.front().duration());
-    return (factor * indicators(place, result).third_octave_rms.head(centres_.size()))
-        .unaryExpr(&report::compute_level);
-  }
-  /// Positive where the result is quieter than the reference [dB]; NaN where one of them is not known or weak.
-  VectorXd insertion_loss(Index place, std::size_t result) const {
-    return known(levels(place, places_.reference(place))) - known(levels(place, result));
-  }
-
- private:
-  static VectorXd known(VectorXd levels) {
-    double strongest = -std::numeric_limits<double>::infinity();
-    for (const double level : levels)
-      if (level > strongest) strongest = level;
-    return levels.unaryExpr([&](double level) {
-      return level >= strongest - weakest_level ? level : std::numeric_limits<double>::quiet_NaN();
-    });
-  }
-
-  const std::vector<Result>& results_;
-  const Places& places_;
-  VectorXd centres_;
-};
 
 double compute_change(double value, double reference) {
   return value > 0 && reference > 0 ? 20 * std::log10(value / reference)
@@ -302,7 +143,7 @@ void add_decay(visu::Report& page, const Comparison& c) {
     if (distance.empty() || distance.front() == distance.back()) continue;
     chart.series.push_back({c.results()[n].label, VectorXd::Map(distance.data(), Index(distance.size())),
                             VectorXd::Map(ppv.data(), Index(ppv.size())), visu::Stroke::line_and_points,
-                            c.results()[n].colour});
+                            find_colour(n)});
   }
   if (chart.series.size() > 1) page.add_chart(std::move(chart));
 }
@@ -388,7 +229,7 @@ void add_insertion_losses(visu::Report& page, const Comparison& c) {
       fmt::format("Level of v_z of the first result minus that of the other, in one-third octave bands: "
                   "positive where the other is quieter. Bands in which one of them lies {:.0f} dB or more "
                   "below its strongest band are left out.",
-                  weakest_level));
+                  report::weakest_level));
   std::vector<visu::Chart> charts;
   std::vector<visu::Table> tables;
   for (std::size_t n = 1; n < c.results().size(); ++n) {
@@ -452,12 +293,12 @@ void add_place(visu::Report& page, const Comparison& c, Index place) {
     if (!c.places().has(place, n)) continue;
     const Result& result = c.results()[n];
     history.series.push_back({result.label, result.vibrations.time, c.velocity(place, n),
-                              n == first ? visu::Stroke::line : visu::Stroke::dashed, result.colour});
+                              n == first ? visu::Stroke::line : visu::Stroke::dashed, find_colour(n)});
     if (const VectorXd levels = c.levels(place, n); is_known(levels))
-      spectra.series.push_back({result.label, c.centres(), levels, visu::Stroke::steps, result.colour});
+      spectra.series.push_back({result.label, c.centres(), levels, visu::Stroke::steps, find_colour(n)});
     if (n == first) continue;
     if (const VectorXd loss = c.insertion_loss(place, n); is_known(loss))
-      losses.series.push_back({result.label, c.centres(), loss, visu::Stroke::steps, result.colour});
+      losses.series.push_back({result.label, c.centres(), loss, visu::Stroke::steps, find_colour(n)});
   }
   show_zero(losses);
   page.add_chart(std::move(history));
@@ -523,43 +364,14 @@ void add_limits(visu::Report& page) {
 
 }  // namespace
 
-namespace report {
-
-std::vector<std::string> make_labels(const std::vector<fs::path>& folders) {
-  std::vector<std::vector<std::string>> names;  // of each folder, from the last to the root
-  for (const fs::path& folder : folders) {
-    std::vector<std::string> parts;
-    for (const fs::path& part : (fs::absolute(folder).lexically_normal() / "").parent_path().relative_path())
-      parts.insert(parts.begin(), part.string());
-    if (std::find(names.begin(), names.end(), parts) != names.end())
-      throw InputError(fmt::format("{}: given twice; a result is compared with others", folder.string()));
-    names.push_back(std::move(parts));
-  }
-  std::vector<std::string> labels;
-  for (const auto& own : names) {
-    std::size_t depth = 1;  // names needed
-    for (const auto& other : names) {
-      if (&other == &own) continue;
-      const auto shared =
-          std::mismatch(own.begin(), own.end(), other.begin(), other.end()).first - own.begin();
-      depth = std::max(depth, size_t(shared) + 1);
-    }
-    std::string label = own.empty() ? "/" : own.front();
-    for (std::size_t i = 1; i < std::min(depth, own.size()); ++i) label.insert(0, own[i] + "/");
-    labels.push_back(std::move(label));
-  }
-  return labels;
-}
-
-}  // namespace report
-
 void write_comparison_report(const std::vector<fs::path>& folders, const fs::path& html) {
   if (folders.size() < 2)
     throw InputError(fmt::format("comparison: {} folder, must be at least 2", folders.size()));
   const std::vector<std::string> labels = report::make_labels(folders);
   std::vector<Result> results;
-  for (std::size_t n = 0; n < folders.size(); ++n) results.push_back(read_result(folders[n], labels[n], n));
-  const Places places = find_common_places(results);
+  for (std::size_t n = 0; n < folders.size(); ++n)
+    results.push_back(report::read_result(folders[n], labels[n]));
+  const Places places = report::find_common_places(results);
   const Comparison comparison(results, places);
 
   std::string names;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace easydyn::soil {
@@ -18,13 +17,5 @@ namespace easydyn::soil {
 ///         two results have a receiver in common, or a file cannot be read or written
 void write_comparison_report(const std::vector<std::filesystem::path>& folders,
                              const std::filesystem::path& html);
-
-namespace report {
-
-/// What tells the folders apart: the last name of each, with as many of the names before it as needed.
-/// @throws InputError if two are the same folder
-std::vector<std::string> make_labels(const std::vector<std::filesystem::path>& folders);
-
-}  // namespace report
 
 }  // namespace easydyn::soil

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "easydyn/error.hpp"
+#include "soil/report/comparison.hpp"
 #include "soil/vibrations.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -176,6 +177,7 @@ TEST_F(ComparisonReport, TellsFoldersOfOneNameApart) {
   EXPECT_THAT(make_labels({"results/plain", "results/trench/"}), ElementsAre("plain", "trench"));
   EXPECT_THAT(make_labels({"a/out", "b/./out", "c"}), ElementsAre("a/out", "b/out", "c"));
   EXPECT_THAT(make_labels({"/a/x/out", "/b/x/out", "/b/y/out"}), ElementsAre("a/x/out", "b/x/out", "y/out"));
+  EXPECT_THAT(make_labels({"/", "a"}), ElementsAre("/", "a"));
   EXPECT_THAT(make_labels({"/out", "/out/out"}), ElementsAre("out", "out/out"));
   EXPECT_THAT(message_of<InputError>([] {
                 make_labels({"a/out", "a/b/../out/"});
